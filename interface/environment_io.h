@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "lighting/lat_long_image.h"
+#include "lighting/result.h"
+
+namespace lightwell {
+
+struct EnvironmentImage {
+  LatLongImage image;              // finite, ≥ 0
+  std::uint64_t not_finite = 0;    // values that were NaN or ±∞, read as 0
+  std::uint64_t negative = 0;      // values below 0, read as 0
+  // One line for a person where either count is positive, else empty.
+  [[nodiscard]] std::string repaired(const std::filesystem::path& file) const;
+};
+
+// Latitude–longitude EXR (any storage, tiled or mip-mapped: full resolution) or Radiance HDR; gray becomes R = G = B.
+// Any size from 1×1. bad_input: missing, a directory, unreadable, truncated, not an image, not latitude–longitude
+// (an EXR whose envmap attribute says cube), no colour channels.
+Result<EnvironmentImage> read_environment(const std::filesystem::path& file);
+
+// EXR, half or float, `envmap` attribute latitude–longitude; written whole or not at all.
+Status write_environment(const std::filesystem::path& file, const LatLongImage& image);
+
+}  // namespace lightwell

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "lighting/frame_format.h"
+#include "lighting/result.h"
+
+namespace lightwell {
+
+// A take: raw frames, losslessly, in Matroska, with what is known of each frame and the calibration attached.
+// Layout of the file: docs/conventions.md.
+
+enum class RecordingCodec { raw, ffv1 };
+
+struct RecordingHeader {
+  FrameFormat format;
+  RecordingCodec codec = RecordingCodec::ffv1;
+  double rate_hz = 0;
+  std::string source;            // "aravis:127.0.0.1", for people
+  std::string calibration_json;  // calibration_to_json; empty: none attached
+  std::int64_t start_utc_ns = 0;
+};
+
+// What is stored beside a frame's codes; read back bit for bit.
+struct RecordedFrame {
+  std::uint64_t sequence = 0;
+  std::int64_t capture_mono_ns = 0;
+  std::int64_t received_mono_ns = 0;
+  std::int64_t capture_utc_ns = 0;
+  double exposure_us = 0;
+  double gain_db = 0;
+  float temperature_c = 0;  // NaN: none
+};
+
+class RecordingWriter {
+ public:
+  // Refuses to overwrite; failed: folder missing, no space, no permission.
+  static Result<std::unique_ptr<RecordingWriter>> create(const std::filesystem::path& file,
+                                                         const RecordingHeader& header);
+  virtual ~RecordingWriter() = default;  // closes; a take without a proper end stays readable to its last whole cluster
+  // Written to disk at least twice a second. After a failure (disk full) the file is closed readable and every further
+  // call fails.
+  virtual Status write(const RecordedFrame& frame, std::span<const std::byte> codes) = 0;
+  virtual Status close() = 0;
+  [[nodiscard]] virtual std::uint64_t frames() const = 0;
+  [[nodiscard]] virtual std::uint64_t bytes() const = 0;
+};
+
+class RecordingReader {
+ public:
+  // bad_input: missing, a directory, not Matroska, not one of our takes, no frames.
+  static Result<std::unique_ptr<RecordingReader>> open(const std::filesystem::path& file);
+  virtual ~RecordingReader() = default;
+  [[nodiscard]] virtual const RecordingHeader& header() const = 0;
+  // The next frame's codes into `codes` (format.bytes()); nullopt at the end; bad_input where the file is cut or
+  // damaged (frames before it have been delivered).
+  virtual Result<std::optional<RecordedFrame>> read(std::span<std::byte> codes) = 0;
+  virtual Status rewind() = 0;
+  // Number of frames by the file's index, or by counting where it has none.
+  virtual Result<std::uint64_t> frame_count() = 0;
+  // False: the file has no proper end (it was cut); `lightwell repair` mends it.
+  [[nodiscard]] virtual bool complete() const = 0;
+};
+
+}  // namespace lightwell

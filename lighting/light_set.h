@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lighting/vector.h"
+
+namespace lightwell {
+
+// A directional light. Returns ρ/π · illuminance · max(0, n·direction) from a Lambertian surface of albedo ρ.
+struct DirectionalLight {
+  Vec3f direction = Vec3f::UnitY();  // unit, from the scene toward the light
+  Rgb illuminance = Rgb::Zero();     // lux on a surface that faces the light
+  std::int32_t parent = -1;          // index of an earlier light, where the whole set is a tree; else -1
+  std::uint32_t id = 0;              // the same light carries the same id from frame to frame
+};
+
+enum class Coverage { hemisphere, sphere };
+
+// Lights in progressive order: a reader takes a prefix and rescales by total power, or folds children into parents
+// where every light but the first has one.
+struct LightSet {
+  std::string method;
+  Coverage coverage = Coverage::hemisphere;
+  Rgb total_illuminance = Rgb::Zero();  // lux, summed over directions, of the map the lights stand for
+  std::vector<DirectionalLight> lights;
+  bool has_parents = false;
+  Rgb ambient = Rgb::Zero();  // radiance from everywhere, cd/m²
+};
+
+// The first count lights of a progressive set standing for all of it: folded into parents where there are parents,
+// else the prefix rescaled to the set's total, per channel (a channel that is dark in the prefix is spread by
+// luminance). count ≥ size returns the set.
+LightSet take_lights(const LightSet& set, std::size_t count);
+
+}  // namespace lightwell
