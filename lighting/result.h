@@ -4,7 +4,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <source_location>
 #include <string>
 #include <utility>
 #include <variant>
@@ -25,11 +24,11 @@ struct Error {
 };
 
 // A check that is always on. For bugs only, never for input.
-inline void verify_bug(bool condition, const char* what,
-                       const std::source_location where = std::source_location::current()) {
+// The builtins rather than std::source_location, which Clang 14 lacks; both compilers have them.
+inline void verify_bug(bool condition, const char* what, const char* file = __builtin_FILE(),
+                       int line = __builtin_LINE()) {
   if (condition) return;
-  std::fprintf(stderr, "lightwell: bug: %s (%s:%u)\n", what, where.file_name(),
-               static_cast<unsigned>(where.line()));
+  std::fprintf(stderr, "lightwell: bug: %s (%s:%d)\n", what, file, line);
   std::abort();
 }
 
