@@ -16,24 +16,25 @@ namespace lightwell {
 
 // What the frame path hands to everybody else, once a frame.
 struct Snapshot {
-  std::uint64_t number = 0;            // counts published frames of this daemon, from 1; 0: nothing yet
-  std::uint64_t sequence = 0;          // the camera's
-  std::int64_t capture_mono_ns = 0;    // mid-exposure
+  std::uint64_t number = 0;          // counts published frames of this daemon, from 1; 0: nothing yet
+  std::uint64_t sequence = 0;        // the camera's
+  std::int64_t capture_mono_ns = 0;  // mid-exposure
   std::int64_t capture_utc_ns = 0;
   std::int64_t received_mono_ns = 0;
-  std::int64_t publish_mono_ns = 0;    // the lights were ready
+  std::int64_t publish_mono_ns = 0;  // the lights were ready
   double exposure_us = 0;
   std::array<char, 17> calibration_id{};  // zero-terminated
   Coverage coverage = Coverage::hemisphere;
-  Rgb total_illuminance = Rgb::Zero();    // filtered, what the lights stand for
-  Rgb measured_illuminance = Rgb::Zero(); // of this very frame's map
-  float delay_frames = 0;                 // lag of the lights behind the map
-  std::vector<DirectionalLight> lights;   // capacity is kept from frame to frame
+  Rgb total_illuminance = Rgb::Zero();     // filtered, what the lights stand for
+  Rgb measured_illuminance = Rgb::Zero();  // of this very frame's map
+  float delay_frames = 0;                  // lag of the lights behind the map
+  std::vector<DirectionalLight> lights;    // capacity is kept from frame to frame
   PolarMap map;
+  std::uint64_t shape = 0;  // changes with camera or calibration; the frame path's own
 };
 
-// One writer, several readers, each of which takes the newest snapshot and may keep it as long as it likes: the writer
-// never waits for a reader. Snapshots are allocated once. At most kMaxReaders leases at a time.
+// One writer, several readers, each of which takes the newest snapshot and may keep it as long as it likes:
+// the writer never waits for a reader. Snapshots are allocated once. At most kMaxReaders leases at a time.
 class SnapshotChannel {
  public:
   static constexpr std::size_t kMaxReaders = 6;

@@ -13,30 +13,30 @@ namespace lightwell {
 struct DaemonStatus {
   std::string version;
   double uptime_s = 0;
-  std::string source;              // "aravis:127.0.0.1"
+  std::string source;  // "aravis:127.0.0.1"
   SourceState source_state = SourceState::no_device;
   std::string source_description;  // one line
   CaptureCounters capture;
   double nominal_rate_hz = 0;
-  double measured_rate_hz = 0;     // published frames over the last seconds
-  std::uint64_t published = 0;     // frames
+  double measured_rate_hz = 0;  // published frames over the last seconds
+  std::uint64_t published = 0;  // frames
   std::uint64_t dropped_by_pipeline = 0;
   // Over the last 1000 frames, milliseconds; NaN before the first.
   double develop_ms_p50 = 0, develop_ms_p99 = 0;  // raw frame to map
   double lights_ms_p50 = 0, lights_ms_p99 = 0;    // map to lights
   double latency_ms_p50 = 0, latency_ms_p99 = 0;  // frame complete in memory to lights published
-  double frame_age_ms = 0;         // since the last published frame's capture
+  double frame_age_ms = 0;                        // since the last published frame's capture
   std::string calibration_id;
-  std::string calibration_verdict; // one line, empty when all is well
+  std::string calibration_verdict;  // one line, empty when all is well
   struct Recording {
     bool active = false;
     std::string file;
     std::uint64_t frames = 0;
-    std::uint64_t dropped = 0;     // frames the disk was too slow for
+    std::uint64_t dropped = 0;  // frames the disk was too slow for
     std::uint64_t bytes = 0;
-    std::string error;             // why the last recording stopped by itself, else empty
+    std::string error;  // why the last recording stopped by itself, else empty
   } recording;
-  std::string alarm;               // the worst thing that is wrong, in words; empty when nothing is
+  std::string alarm;  // the worst thing that is wrong, in words; empty when nothing is
 };
 
 // How the web and DDS rooms ask for it, and what they may ask the daemon to do. Callable from any thread.

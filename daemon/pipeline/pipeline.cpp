@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/pipeline/pipeline.h"
+
+#include <pthread.h>
+#include <sched.h>
+
+#include "daemon/pipeline/clock.h"
+
+namespace lightwell {
+namespace {
+
+// Ahead of renderers and encoders on a small machine, where the system lets us; without the right it is not
+// an error.
+void ask_for_real_time() noexcept {
+  sched_param parameter{};
+  parameter.sched_priority = 10;
+  pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
+  pthread_setname_np(pthread_self(), "frame-path");
+}
+
+}  // namespace
+
+Pipeline::Pipeline(SnapshotChannel& snapshots, FrameSink* sink) : snapshots_(snapshots), sink_(sink) {}
+
+Pipeline::~Pipeline() {
+  stop();
+}
+
+Status Pipeline::start(std::shared_ptr<CaptureSource> source, std::shared_ptr<FramePath> path) {
+  verify_bug(!thread_.joinable(), "pipeline started twice");
+  const Status started = source->start();
+  if (!started) return started;
+  source_ = std::move(source);
+  path_ = std::move(path);
+  stopping_ = false;
+  thread_ = std::thread([this] { run(); });
+  return {};
+}
+
+Status Pipeline::replace(std::shared_ptr<CaptureSource> source, std::shared_ptr<FramePath> path) {
+  if (source) {
+    const Status started = source->start();
+    if (!started) return started;
+  }
+  const std::scoped_lock lock(mutex_);
+  next_source_ = std::move(source);
+  next_path_ = std::move(path);
+  replacement_waits_ = true;
+  return {};
+}
+
+void Pipeline::stop() noexcept {
+  stopping_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+Pipeline::View Pipeline::view() const {
+  const std::scoped_lock lock(mutex_);
+  return {source_, path_, mismatch_, measured_rate_hz_.load(std::memory_order_relaxed)};
+}
+
+void Pipeline::run() noexcept {
+  ask_for_real_time();
+  while (!stopping_) {
+    heartbeat_.fetch_add(1, std::memory_order_relaxed);
+    if (replacement_waits_.load(std::memory_order_acquire)) take_replacement();
+    const FrameLease frame = source_->wait(std::chrono::milliseconds(100));
+    if (frame) handle(frame);
+    measure_rate(mono_now_ns());
+  }
+  source_->stop();
+}
+
+// The only place that changes source_ and path_ once the thread runs, so the loop reads them without the
+// lock.
+void Pipeline::take_replacement() {
+  std::shared_ptr<CaptureSource> old_source;
+  {
+    const std::scoped_lock lock(mutex_);
+    next_path_->continue_from(path_->published());
+    path_ = std::move(next_path_);
+    if (next_source_) {
+      old_source = std::move(source_);
+      source_ = std::move(next_source_);
+    }
+    mismatch_.clear();
+    replacement_waits_ = false;
+  }
+  mismatched_ = false;
+  if (old_source) old_source->stop();
+}
+
+void Pipeline::handle(const FrameLease& frame) {
+  const Status ready = path_->prepare(frame.info().format, source_->rate_hz());
+  if (!ready || mismatched_) {  // rare: state changes only
+    const std::scoped_lock lock(mutex_);
+    mismatch_ = ready ? "" : ready.error().message;
+    mismatched_ = !ready.ok();
+  }
+  if (!ready) return;
+  path_->process(frame.info(), frame.bytes());
+  if (sink_ != nullptr) sink_->offer(frame.info(), frame.bytes());
+}
+
+// Published frames over windows of two seconds.
+void Pipeline::measure_rate(std::int64_t now_ns) noexcept {
+  const std::uint64_t published = path_->published();
+  if (rate_window_start_ns_ == 0) rate_window_start_ns_ = now_ns;
+  const double seconds = static_cast<double>(now_ns - rate_window_start_ns_) * 1e-9;
+  if (seconds < 2) return;
+  measured_rate_hz_ = static_cast<double>(published - rate_window_published_) / seconds;
+  rate_window_start_ns_ = now_ns;
+  rate_window_published_ = published;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <thread>
+
+#include "daemon/capture/capture_source.h"
+#include "daemon/pipeline/frame_path.h"
+#include "daemon/pipeline/snapshot.h"
+
+namespace lightwell {
+
+// Sees every developed frame after its lights are out. Must not block or allocate: it runs on the frame path.
+class FrameSink {
+ public:
+  virtual ~FrameSink() = default;
+  virtual void offer(const FrameInfo& info, std::span<const std::byte> codes) noexcept = 0;
+};
+
+// The frame path's thread: takes the source's freshest frame, makes its lights, offers it to the sink.
+// Everything else in the daemon reads what it publishes; nothing else can make it wait.
+class Pipeline {
+ public:
+  // snapshots and sink (may be null) outlive the pipeline.
+  Pipeline(SnapshotChannel& snapshots, FrameSink* sink);
+  ~Pipeline();
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
+
+  // Fails where the source cannot even begin (missing file); afterwards frames flow until stop.
+  Status start(std::shared_ptr<CaptureSource> source, std::shared_ptr<FramePath> path);
+  // Takes effect between two frames, without losing one. source null: keep the one that runs.
+  // A new source that cannot begin is refused here and the old one goes on.
+  Status replace(std::shared_ptr<CaptureSource> source, std::shared_ptr<FramePath> path);
+  // Stops the thread and the source; up to 5 s where a camera died.
+  void stop() noexcept;
+
+  struct View {  // for status; both stay valid while held
+    std::shared_ptr<CaptureSource> source;
+    std::shared_ptr<FramePath> path;
+    std::string mismatch;  // why frames arrive but are not developed; empty: all well
+    double measured_rate_hz = 0;
+  };
+  [[nodiscard]] View view() const;
+  // Advances with every turn of the loop, frames or not: a stuck frame path stops it (watchdog).
+  [[nodiscard]] std::uint64_t heartbeat() const noexcept {
+    return heartbeat_.load(std::memory_order_relaxed);
+  }
+
+ private:
+  void run() noexcept;
+  void take_replacement();
+  void handle(const FrameLease& frame);
+  void measure_rate(std::int64_t now_ns) noexcept;
+
+  SnapshotChannel& snapshots_;
+  FrameSink* sink_;
+  std::thread thread_;
+  std::atomic<bool> stopping_{false};
+  std::atomic<std::uint64_t> heartbeat_{0};
+  std::atomic<double> measured_rate_hz_{0};
+
+  mutable std::mutex mutex_;  // guards the four below; the frame path holds it for pointer copies only
+  std::shared_ptr<CaptureSource> source_, next_source_;
+  std::shared_ptr<FramePath> path_, next_path_;
+  std::string mismatch_;
+  std::atomic<bool> replacement_waits_{false};
+
+  // Frame path's own.
+  bool mismatched_ = false;
+  std::int64_t rate_window_start_ns_ = 0;
+  std::uint64_t rate_window_published_ = 0;
+};
+
+}  // namespace lightwell
