@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "lighting/lat_long_image.h"
 #include "lighting/result.h"
@@ -19,12 +20,15 @@ struct EnvironmentImage {
   [[nodiscard]] std::string repaired(const std::filesystem::path& file) const;
 };
 
-// Latitude–longitude EXR (any storage, tiled or mip-mapped: full resolution) or Radiance HDR; gray becomes R = G = B.
+// Latitude–longitude EXR (any storage, tiled or mip-mapped: full resolution) or Radiance HDR (RGBE, rows from the top).
+// Channels R, G, B, plain or of a layer, those that are absent dark; else Y (or a lone channel) as R = G = B.
 // Any size from 1×1. bad_input: missing, a directory, unreadable, truncated, not an image, not latitude–longitude
-// (an EXR whose envmap attribute says cube), no colour channels.
+// (an EXR whose envmap attribute says cube), no colour channels, over 2^28 pixels.
 Result<EnvironmentImage> read_environment(const std::filesystem::path& file);
+// The same from a file's bytes; name_for_errors is the file.
+Result<EnvironmentImage> environment_from_bytes(std::string_view bytes, const std::string& name_for_errors);
 
-// EXR, half or float, `envmap` attribute latitude–longitude; written whole or not at all.
+// EXR, 32 bit float, `envmap` attribute latitude–longitude; written whole or not at all.
 Status write_environment(const std::filesystem::path& file, const LatLongImage& image);
 
 }  // namespace lightwell

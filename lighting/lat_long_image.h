@@ -26,13 +26,17 @@ struct LatLongImage {
   [[nodiscard]] double pixel_solid_angle_sr(int y) const;
 };
 
-// The image's own pixels as a polar map, without resampling: row y is ring y, columns run the other way round.
-// Hemisphere keeps the rows above the horizon; an odd height splits its middle row there (same radiance, half its solid
-// angle). rotate_y_rad turns the environment about +Y (counter-clockwise seen from above: a light at azimuth λ comes to
-// λ + angle) and is rounded to whole columns only if `resample` is false; otherwise columns are split by area.
+// The image's own pixels as a polar map of three channels, without resampling: row y is ring y, columns run the other
+// way round. Where the sphere's own lines fall inside pixels, all pixels are halved, same radiance on both halves: an
+// odd width gives twice the sectors (sector 0 begins at azimuth 0), an odd height in a hemisphere as many rings as rows.
+// rotate_y_rad turns the environment about +Y: a light at azimuth λ comes to λ + angle. Whole columns are moved exactly;
+// for any other angle each column is divided between two by area, which keeps the energy.
+// image: finite, ≥ 0, at least 1×1
 PolarMap polar_map_from_lat_long(const LatLongImage& image, bool hemisphere, double rotate_y_rad = 0);
 
-// Area-exact resampling to another grid: every source pixel's energy is divided among the bins it overlaps.
+// Area-exact resampling to another grid: every source bin's illuminance is divided among the bins it overlaps by area,
+// so the total is kept to float rounding where the grid covers the map; light beyond theta_max of the grid is left out.
+// Bins of the grid beyond the map carry their nearest radiance and solid angle 0.
 PolarMap resample_polar(const PolarMap& map, const PolarGrid& grid);
 
 }  // namespace lightwell

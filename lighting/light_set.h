@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -32,8 +33,8 @@ struct LightSet {
 };
 
 // The first count lights of a progressive set standing for all of it: folded into parents where there are parents,
-// else the prefix rescaled to the set's total, per channel (a channel that is dark in the prefix is spread by
-// luminance). count ≥ size returns the set.
+// else the prefix rescaled, per channel, to the power of all the set's lights (a channel that is dark in the prefix is
+// spread by luminance, evenly where that is dark too). count ≥ size returns the set; total and ambient stay.
 LightSet take_lights(const LightSet& set, std::size_t count);
 
 }  // namespace lightwell

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "lighting/lat_long_image.h"
+#include "lighting/result.h"
+
+namespace lightwell {
+
+// Radiance HDR pictures (RGBE: three 8 bit mantissas over one exponent), flat or run-length encoded, old and
+// new. Our own reader because it meets files from anywhere and OpenImageIO's cannot read from memory: every
+// byte is checked. source: Ward, "Real Pixels", Graphics Gems II, 1991; Radiance file formats, section
+// "Picture File Format"
+bool is_radiance_hdr(std::string_view bytes);
+
+// Values as stored: an EXPOSURE line is not divided out, as other readers of environment images do not.
+// bad_input: truncated, damaged, not RGBE, another orientation than -Y +X, more than pixel_limit pixels.
+Result<LatLongImage> read_radiance_hdr(std::string_view bytes, const std::string& name_for_errors,
+                                       std::int64_t pixel_limit);
+
+}  // namespace lightwell
