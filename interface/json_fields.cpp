@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "interface/json_fields.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lightwell {
+namespace {
+
+// A value as it stands in the file, short enough for one line.
+std::string shown(const nlohmann::json& value) {
+  constexpr std::size_t kLongest = 40;
+  if (value.is_array()) return "an array of " + std::to_string(value.size());
+  if (value.is_object()) return "an object";
+  std::string text = value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  return text;
+}
+
+}  // namespace
+
+JsonFields::JsonFields(const nlohmann::json& object, std::string file, std::string path)
+    : object_(object), file_(std::move(file)), path_(std::move(path)) {
+  if (object.is_object()) return;
+  const std::string where = path_.empty() ? "" : path_ + " ";
+  throw FieldFailure{
+      {ErrorKind::bad_input, file_ + ": " + where + "is " + shown(object) + ", expected an object"}};
+}
+
+bool JsonFields::has(std::string_view key) const {
+  return object_.contains(key);
+}
+
+void JsonFields::fail(std::string_view key, std::string_view what) const {
+  const std::string field = path_.empty() ? std::string(key) : path_ + "." + std::string(key);
+  throw FieldFailure{{ErrorKind::bad_input, file_ + ": " + field + " " + std::string(what)}};
+}
+
+const nlohmann::json& JsonFields::get(std::string_view key) const {
+  const auto found = object_.find(key);
+  if (found == object_.end()) fail(key, "is missing");
+  return *found;
+}
+
+JsonFields JsonFields::object(std::string_view key) const {
+  return {get(key), file_, path_.empty() ? std::string(key) : path_ + "." + std::string(key)};
+}
+
+double JsonFields::number(std::string_view key) const {
+  const nlohmann::json& value = get(key);
+  if (!value.is_number() || !std::isfinite(value.get<double>()))
+    fail(key, "= " + shown(value) + ": allowed a finite number");
+  return value.get<double>();
+}
+
+int JsonFields::integer(std::string_view key, int lowest, int highest) const {
+  const double value = number(key);
+  if (value != std::floor(value) || value < lowest || value > highest)
+    fail(key, "= " + shown(get(key)) + ": allowed a whole number from " + std::to_string(lowest) + " to " +
+                  std::to_string(highest));
+  return static_cast<int>(value);
+}
+
+std::string JsonFields::text(std::string_view key) const {
+  const nlohmann::json& value = get(key);
+  if (!value.is_string()) fail(key, "= " + shown(value) + ": allowed a text");
+  return value.get<std::string>();
+}
+
+void JsonFields::require_schema(std::string_view schema) const {
+  if (text("schema") != schema)
+    fail("schema", "= " + shown(get("schema")) + ": allowed \"" + std::string(schema) + "\"");
+}
+
+const nlohmann::json& JsonFields::array_of(std::string_view key, std::size_t count) const {
+  const nlohmann::json& value = get(key);
+  if (!value.is_array() || value.size() != count)
+    fail(key, "is " + shown(value) + ", expected an array of " + std::to_string(count) + " numbers");
+  return value;
+}
+
+double JsonFields::element(const nlohmann::json& array, std::string_view key, std::size_t i) const {
+  const nlohmann::json& value = array[i];
+  if (!value.is_number() || !std::isfinite(value.get<double>()))
+    fail(std::string(key) + "[" + std::to_string(i) + "]", "= " + shown(value) + ": allowed a finite number");
+  return value.get<double>();
+}
+
+void JsonFields::numbers(std::string_view key, std::span<double> values) const {
+  const nlohmann::json& array = array_of(key, values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = element(array, key, i);
+}
+
+std::vector<double> JsonFields::number_list(std::string_view key) const {
+  const nlohmann::json& value = get(key);
+  if (!value.is_array()) fail(key, "is " + shown(value) + ", expected an array of numbers");
+  std::vector<double> list(value.size());
+  for (std::size_t i = 0; i < list.size(); ++i) list[i] = element(value, key, i);
+  return list;
+}
+
+Result<nlohmann::json> parse_json(const std::string& text, const std::string& file) {
+  try {
+    return nlohmann::json::parse(text);
+  } catch (const nlohmann::json::exception& e) {
+    // The library's message holds a number for itself, then the place and what was expected; one line of it
+    // suffices.
+    std::string why = e.what();
+    if (const auto bracket = why.find("] "); bracket != std::string::npos) why.erase(0, bracket + 2);
+    std::replace_if(
+        why.begin(), why.end(), [](unsigned char c) { return c < ' ' || c > '~'; }, '?');
+    return Error{ErrorKind::bad_input, file + ": is not JSON: " + why.substr(0, 200)};
+  }
+}
+
+}  // namespace lightwell

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lighting/result.h"
+
+namespace lightwell {
+
+// Thrown while a file's fields are read, caught where reading began.
+struct FieldFailure {
+  Error error;
+};
+
+// One object of a JSON file. Every getter checks presence, type and range, and throws FieldFailure with one
+// line that names file, field, value and what is allowed.
+class JsonFields {
+ public:
+  // path: of this object inside the file, "" for its root
+  JsonFields(const nlohmann::json& object, std::string file, std::string path = "");
+
+  [[nodiscard]] bool has(std::string_view key) const;
+  [[nodiscard]] JsonFields object(std::string_view key) const;
+  [[nodiscard]] double number(std::string_view key) const;  // finite
+  [[nodiscard]] int integer(std::string_view key, int lowest, int highest) const;
+  [[nodiscard]] std::string text(std::string_view key) const;
+  void require_schema(std::string_view schema) const;
+  // values.size() numbers
+  void numbers(std::string_view key, std::span<double> values) const;
+  [[nodiscard]] std::vector<double> number_list(std::string_view key) const;
+  [[noreturn]] void fail(std::string_view key, std::string_view what) const;
+
+ private:
+  [[nodiscard]] const nlohmann::json& get(std::string_view key) const;
+  [[nodiscard]] const nlohmann::json& array_of(std::string_view key, std::size_t count) const;
+  [[nodiscard]] double element(const nlohmann::json& array, std::string_view key, std::size_t i) const;
+
+  const nlohmann::json& object_;
+  std::string file_;
+  std::string path_;
+};
+
+// The text as a JSON value; bad_input with the place of the error.
+Result<nlohmann::json> parse_json(const std::string& text, const std::string& file);
+
+}  // namespace lightwell

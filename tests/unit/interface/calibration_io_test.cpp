@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "interface/calibration_io.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+
+#include "interface/atomic_file.h"
+#include "interface/base64.h"
+#include "tests/support/temporary_folder.h"
+
+namespace lightwell {
+namespace {
+
+using test::TemporaryFolder;
+
+Calibration example() {
+  Calibration c;
+  c.response.model = LogResponse{64.125, 208.3, 0.1};
+  c.response.black_code = 64;
+  c.response.clip_code = 4090;
+  c.response.reference_exposure_us = 3333.3;
+  c.lens.image_size = {31, 17};
+  c.lens.focal = {5.1, 5.2};
+  c.lens.center = {15.3, 8.1};
+  c.lens.k = {-0.02, 0.003, 1e-4, -1e-5};
+  c.lens.max_theta_rad = 1.5;
+  c.flat.image_size = c.lens.image_size;
+  c.flat.vignetting = {-0.1, 0.01, -0.001};
+  std::mt19937 random(1);
+  std::normal_distribution<float> normal(0, 3);
+  c.flat.offset_codes.resize(31 * 17);
+  for (float& o : c.flat.offset_codes) o = normal(random);
+  c.rec709_from_camera << 1.5, -0.3, -0.2, -0.1, 1.2, -0.1, 0, -0.4, 1.4;
+  return c;
+}
+
+void expect_same(const Calibration& a, const Calibration& b) {
+  const auto& la = std::get<LogResponse>(a.response.model);
+  const auto& lb = std::get<LogResponse>(b.response.model);
+  EXPECT_EQ(la.a, lb.a);
+  EXPECT_EQ(la.b, lb.b);
+  EXPECT_EQ(la.c, lb.c);
+  EXPECT_EQ(a.response.clip_code, b.response.clip_code);
+  EXPECT_EQ(a.response.black_code, b.response.black_code);
+  EXPECT_EQ(a.response.reference_exposure_us, b.response.reference_exposure_us);
+  EXPECT_EQ(a.lens.image_size, b.lens.image_size);
+  EXPECT_EQ(a.lens.focal, b.lens.focal);
+  EXPECT_EQ(a.lens.center, b.lens.center);
+  EXPECT_EQ(a.lens.k, b.lens.k);
+  EXPECT_NEAR(a.lens.max_theta_rad, b.lens.max_theta_rad,
+              1e-15);  // radians to degrees and back: one rounding
+  EXPECT_EQ(a.flat.vignetting, b.flat.vignetting);
+  EXPECT_EQ(a.rec709_from_camera, b.rec709_from_camera);
+  ASSERT_EQ(a.flat.offset_codes.size(), b.flat.offset_codes.size());
+  for (std::size_t i = 0; i < a.flat.offset_codes.size(); ++i)
+    EXPECT_NEAR(a.flat.offset_codes[i], b.flat.offset_codes[i],
+                16.0 / 32768 / 2);  // half a step below 16 codes
+}
+
+TEST(CalibrationIo, RoundTripThroughAFolderKeepsEveryFieldAndTheId) {
+  const TemporaryFolder folder;
+  const Calibration written = example();
+  ASSERT_TRUE(write_calibration(folder.path() / "new", written));
+  const auto read = read_calibration(folder.path() / "new");
+  ASSERT_TRUE(read) << read.error().message;
+  expect_same(written, *read);
+  EXPECT_EQ(calibration_id(written), read->id);
+  // A second trip changes nothing at all.
+  ASSERT_TRUE(write_calibration(folder.path(), *read));
+  EXPECT_EQ(read_calibration(folder.path())->flat.offset_codes, read->flat.offset_codes);
+}
+
+TEST(CalibrationIo, RoundTripThroughTheAttachmentKeepsEveryFieldAndTheId) {
+  const Calibration written = example();
+  const auto read = calibration_from_json(calibration_to_json(written), "take.mkv");
+  ASSERT_TRUE(read) << read.error().message;
+  expect_same(written, *read);
+  EXPECT_EQ(calibration_id(written), read->id);
+}
+
+TEST(CalibrationIo, LinearResponseAndNoFixedPatternSurvive) {
+  Calibration c;
+  c.response.model = LinearResponse{12, 0.25};
+  const auto read = calibration_from_json(calibration_to_json(c), "x");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(std::get<LinearResponse>(read->response.model).gain, 0.25);
+  EXPECT_TRUE(read->flat.offset_codes.empty());
+  EXPECT_EQ(read->id, calibration_id(c));
+}
+
+TEST(CalibrationIo, IdTellsAnyChangeOfContent) {
+  const std::string id = calibration_id(example());
+  EXPECT_EQ(id.size(), 16u);
+  const auto differs = [&](auto change) {
+    Calibration c = example();
+    change(c);
+    return calibration_id(c) != id;
+  };
+  EXPECT_TRUE(differs([](Calibration& c) { std::get<LogResponse>(c.response.model).a += 1e-9; }));
+  EXPECT_TRUE(differs([](Calibration& c) { c.response.bits = 11; }));
+  EXPECT_TRUE(differs([](Calibration& c) { c.lens.k[3] += 1e-9; }));
+  EXPECT_TRUE(differs([](Calibration& c) { c.lens.max_theta_rad += 1e-6; }));
+  EXPECT_TRUE(differs([](Calibration& c) { c.flat.vignetting[1] += 1e-9; }));
+  EXPECT_TRUE(differs([](Calibration& c) { c.flat.offset_codes[5] += 0.01f; }));
+  EXPECT_TRUE(differs([](Calibration& c) { c.rec709_from_camera(2, 1) += 1e-9; }));
+}
+
+TEST(CalibrationIo, TableIsDenseOverTheUsableCodesAndIncreases) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_calibration(folder.path(), example()));
+  const auto root = nlohmann::json::parse(*read_text_file(folder.path() / "response.json"));
+  const auto& code = root.at("table").at("code");
+  const auto& luminance = root.at("table").at("luminance_cd_m2");
+  ASSERT_EQ(code.size(), 4090u - 64u + 1u);
+  ASSERT_EQ(luminance.size(), code.size());
+  for (std::size_t i = 0; i < code.size(); ++i) {
+    EXPECT_EQ(code[i].get<int>(), 64 + static_cast<int>(i));
+    if (i > 0) {
+      EXPECT_GT(luminance[i].get<double>(), luminance[i - 1].get<double>());
+    }
+  }
+}
+
+// Every wrong field is refused by the file's name and its own.
+struct Wrong {
+  const char* file;
+  const char* pointer;
+  const char* value;
+  const char* named;
+};
+
+class WrongField : public testing::TestWithParam<Wrong> {};
+
+TEST_P(WrongField, IsBadInputThatNamesFileAndField) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_calibration(folder.path(), example()));
+  const auto file = folder.path() / GetParam().file;
+  auto root = nlohmann::json::parse(*read_text_file(file));
+  root[nlohmann::json::json_pointer(GetParam().pointer)] = nlohmann::json::parse(GetParam().value);
+  ASSERT_TRUE(write_file_atomically(file, root.dump()));
+  const auto read = read_calibration(folder.path());
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().kind, ErrorKind::bad_input);
+  EXPECT_NE(read.error().message.find(file.string()), std::string::npos) << read.error().message;
+  EXPECT_NE(read.error().message.find(GetParam().named), std::string::npos) << read.error().message;
+  EXPECT_EQ(read.error().message.find('\n'), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    CalibrationIo, WrongField,
+    testing::Values(Wrong{"response.json", "/schema", "\"lightwell.response/2\"", "schema"},
+                    Wrong{"response.json", "/model", "\"cubic\"", "model"},
+                    Wrong{"response.json", "/parameters", "[1,2]", "parameters"},
+                    Wrong{"response.json", "/parameters/b", "-1", "b = -1"},
+                    Wrong{"response.json", "/parameters/a", "\"x\"", "parameters.a"},
+                    Wrong{"response.json", "/bits", "12.5", "bits"},
+                    Wrong{"response.json", "/bits", "17", "bits"},
+                    Wrong{"response.json", "/clip_code", "5000", "clip_code"},
+                    Wrong{"response.json", "/black_code", "null", "black_code"},
+                    Wrong{"response.json", "/reference_exposure_us", "0", "reference_exposure_us"},
+                    Wrong{"response.json", "/table/code", "[1,2]", "luminance_cd_m2"},
+                    Wrong{"response.json", "/table/luminance_cd_m2/1", "-5", "luminance_cd_m2"},
+                    Wrong{"response.json", "/rec709_from_camera/1", "[1,2]", "rec709_from_camera"},
+                    Wrong{"lens.json", "/schema", "7", "schema"},
+                    Wrong{"lens.json", "/image_size", "[640]", "image_size"},
+                    Wrong{"lens.json", "/image_size/0", "0", "image_size[0]"},
+                    Wrong{"lens.json", "/image_size/1", "1e300", "image_size[1]"},
+                    Wrong{"lens.json", "/focal/1", "-3", "focal[1]"},
+                    Wrong{"lens.json", "/center/0", "\"c\"", "center[0]"},
+                    Wrong{"lens.json", "/k", "{}", "k"}, Wrong{"lens.json", "/k/0", "-9", "k"},
+                    Wrong{"lens.json", "/max_theta_deg", "181", "max_theta_deg"},
+                    Wrong{"flat.json", "/schema", "\"\"", "schema"},
+                    Wrong{"flat.json", "/image_size/0", "30", "offset_codes.data"},
+                    Wrong{"flat.json", "/vignetting/0", "-5", "vignetting"},
+                    Wrong{"flat.json", "/offset_codes/encoding", "\"raw\"", "encoding"},
+                    Wrong{"flat.json", "/offset_codes/scale", "0", "scale"},
+                    Wrong{"flat.json", "/offset_codes/data", "\"!!!!\"", "data"}));
+
+TEST(CalibrationIo, MissingFolderAndTruncatedFileAreBadInputButNoFlatIsFine) {
+  EXPECT_EQ(read_calibration("/nonexistent").error().kind, ErrorKind::bad_input);
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_calibration(folder.path(), example()));
+  std::filesystem::remove(folder.path() / "flat.json");
+  const auto without = read_calibration(folder.path());
+  ASSERT_TRUE(without) << without.error().message;
+  EXPECT_TRUE(without->flat.offset_codes.empty());
+  const std::string lens = *read_text_file(folder.path() / "lens.json");
+  ASSERT_TRUE(write_file_atomically(folder.path() / "lens.json", lens.substr(0, lens.size() / 2)));
+  EXPECT_EQ(read_calibration(folder.path()).error().kind, ErrorKind::bad_input);
+}
+
+TEST(CalibrationIo, WritingBelowAMissingFolderFails) {
+  const Status status = write_calibration("/nonexistent/calibration", example());
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().kind, ErrorKind::failed);
+}
+
+// Damage anywhere is an answer, never a crash; what still reads is a valid calibration.
+TEST(CalibrationIo, DamagedTextNeverCrashes) {
+  const std::string good = calibration_to_json(example());
+  std::mt19937 random(7);
+  for (int i = 0; i < 3000; ++i) {
+    std::string text = good;
+    const int changes = 1 + static_cast<int>(random() % 4);
+    for (int c = 0; c < changes; ++c) text[random() % text.size()] = static_cast<char>(random() & 255);
+    if (i % 3 == 0) text.resize(random() % text.size());
+    const auto read = calibration_from_json(text, "damaged");
+    if (read) {
+      EXPECT_TRUE(check(read->response));
+      EXPECT_TRUE(check(read->flat, read->lens));
+    } else {
+      EXPECT_EQ(read.error().kind, ErrorKind::bad_input);
+    }
+  }
+}
+
+TEST(Base64, KnownVectorsAndRoundTrip) {
+  const auto bytes = [](std::string_view s) { return std::as_bytes(std::span(s.data(), s.size())); };
+  EXPECT_EQ(base64_encode(bytes("foobar")), "Zm9vYmFy");  // RFC 4648, section 10
+  EXPECT_EQ(base64_encode(bytes("fooba")), "Zm9vYmE=");
+  EXPECT_EQ(base64_encode(bytes("foob")), "Zm9vYg==");
+  EXPECT_EQ(base64_encode({}), "");
+  std::vector<std::byte> all(257);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::byte>(i * 37);
+  EXPECT_EQ(base64_decode(base64_encode(all)), all);
+}
+
+TEST(Base64, RefusesWhatEncodingCannotWrite) {
+  for (const char* bad : {"Zm9", "Zm9v\n", "Zm=v", "Z===", "====", "Zh==", "Zm9vYg=", "Zm 9"})
+    EXPECT_FALSE(base64_decode(bad)) << bad;
+}
+
+}  // namespace
+}  // namespace lightwell
