@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "lighting/result.h"
+
+namespace lightwell {
+
+struct DdsOptions {
+  int domain = 0;                // 0 to 230; programs see each other only inside one domain
+  std::string interface = "lo";  // network interface, by name or address; "lo" reaches this machine only
+};
+
+// A participant on a DDS domain, with multicast discovery on one interface. The configuration is made here and does not
+// depend on the surroundings, except that a user who sets CYCLONEDDS_URI gets that configuration instead.
+// Readers and writers share the object and keep it alive. Opening a domain twice in a process gives the same object.
+class DdsDomain {
+ public:
+  // usage: domain out of range, no such interface, or the domain is already open on another one; failed: the network.
+  static Result<std::shared_ptr<DdsDomain>> open(const DdsOptions& options);
+  ~DdsDomain();
+  DdsDomain(const DdsDomain&) = delete;
+  DdsDomain& operator=(const DdsDomain&) = delete;
+
+  [[nodiscard]] std::int32_t participant() const { return participant_; }  // Cyclone DDS entity handle
+  [[nodiscard]] const DdsOptions& options() const { return options_; }
+
+ private:
+  explicit DdsDomain(DdsOptions options) : options_(std::move(options)) {}
+  DdsOptions options_;
+  std::int32_t domain_ = 0;
+  std::int32_t participant_ = 0;
+};
+
+}  // namespace lightwell

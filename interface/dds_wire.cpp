@@ -1,0 +1,282 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "interface/dds_wire.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <span>
+#include <string_view>
+
+namespace lightwell {
+namespace {
+
+// Cuts at the end of a UTF-8 character.
+template <std::size_t N>
+void set_text(char (&to)[N], std::string_view from) {
+  std::size_t size = std::min(from.size(), N - 1);
+  if (size < from.size())
+    while (size > 0 && (static_cast<unsigned char>(from[size]) & 0xC0) == 0x80) --size;
+  std::memcpy(to, from.data(), size);
+  std::memset(to + size, 0, N - size);
+}
+
+template <std::size_t N>
+std::string get_text(const char (&from)[N]) {
+  return {from, ::strnlen(from, N)};
+}
+
+// Control characters in a name from the network would end up in terminals and logs.
+template <std::size_t N>
+bool is_printable(const char (&text)[N]) {
+  const auto* const end = text + ::strnlen(text, N);
+  return std::none_of(text, end, [](char c) { return (static_cast<unsigned char>(c) < 0x20) || c == 0x7f; });
+}
+
+void set_rgb(float (&to)[3], const Rgb& from) {
+  for (int c = 0; c < 3; ++c) to[c] = from[c];
+}
+
+Rgb get_rgb(const float (&from)[3]) { return {from[0], from[1], from[2]}; }
+
+bool is_power(const float (&rgb)[3]) {
+  return std::all_of(rgb, rgb + 3, [](float v) { return std::isfinite(v) && v >= 0; });
+}
+
+void header_to_wire(const FrameHeader& header, lightwell_FrameHeader& wire) {
+  wire.number = header.number;
+  wire.camera_sequence = header.sequence;
+  wire.capture_mono_ns = header.capture_mono_ns;
+  wire.capture_utc_ns = header.capture_utc_ns;
+  wire.publish_mono_ns = header.publish_mono_ns;
+  set_text(wire.timecode, header.timecode);
+  set_text(wire.calibration_id, header.calibration_id);
+  wire.coverage =
+      header.coverage == Coverage::sphere ? lightwell_COVERAGE_SPHERE : lightwell_COVERAGE_HEMISPHERE;
+  wire.measured_part = header.measured_part;
+  set_rgb(wire.total_illuminance, header.total_illuminance);
+  wire.delay_frames = header.delay_frames;
+}
+
+const char* check_header(const lightwell_FrameHeader& wire) {
+  if (wire.coverage != lightwell_COVERAGE_SPHERE && wire.coverage != lightwell_COVERAGE_HEMISPHERE)
+    return "coverage is neither hemisphere nor sphere";
+  if (!(wire.measured_part >= 0 && wire.measured_part <= 1)) return "measured_part is not within 0 to 1";
+  if (!is_power(wire.total_illuminance)) return "total_illuminance is not finite and >= 0";
+  if (!(std::isfinite(wire.delay_frames) && wire.delay_frames >= 0)) return "delay_frames is not finite and >= 0";
+  if (!is_printable(wire.timecode) || !is_printable(wire.calibration_id)) return "a name has control characters";
+  return nullptr;
+}
+
+void header_from_wire(const lightwell_FrameHeader& wire, const char (&probe)[64], FrameHeader& header) {
+  header.probe = get_text(probe);
+  header.number = wire.number;
+  header.sequence = wire.camera_sequence;
+  header.capture_mono_ns = wire.capture_mono_ns;
+  header.capture_utc_ns = wire.capture_utc_ns;
+  header.publish_mono_ns = wire.publish_mono_ns;
+  header.timecode = get_text(wire.timecode);
+  header.calibration_id = get_text(wire.calibration_id);
+  header.coverage = wire.coverage == lightwell_COVERAGE_SPHERE ? Coverage::sphere : Coverage::hemisphere;
+  header.measured_part = wire.measured_part;
+  header.total_illuminance = get_rgb(wire.total_illuminance);
+  header.delay_frames = wire.delay_frames;
+}
+
+float squared_norm(const float (&v)[3]) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
+
+std::string check_light(const lightwell_Light& light, std::size_t index, bool has_parents) {
+  const auto wrong = [&](const char* what) { return "light " + std::to_string(index) + ": " + what; };
+  // 1e-3 of the length is 2e-3 of its square; NaN fails too.
+  if (!(std::abs(squared_norm(light.direction) - 1) <= 2e-3f)) return wrong("direction is not unit");
+  if (!is_power(light.illuminance)) return wrong("illuminance is not finite and >= 0");
+  const auto earlier = static_cast<std::int64_t>(index);
+  const bool rooted = index == 0 ? light.parent == -1 : light.parent >= 0 && light.parent < earlier;
+  if (has_parents && !rooted) return wrong("parent is not an earlier light");
+  return {};
+}
+
+// Power of two that puts the largest value into [2^14, 2^15), well inside the half range (65504).
+float scale_for(std::span<const float> radiance) {
+  const float largest = radiance.empty() ? 0 : *std::max_element(radiance.begin(), radiance.end());
+  if (!(largest > 0)) return 1;
+  // Not below the smallest normal float, whose inverse must stay finite.
+  return std::ldexp(1.0f, std::max(std::ilogb(largest) - 14, -126));
+}
+
+}  // namespace
+
+LightSet LightFrame::light_set() const {
+  LightSet set;
+  set.method = "live";
+  set.coverage = header.coverage;
+  set.total_illuminance = header.total_illuminance;
+  set.lights = lights;
+  set.has_parents = has_parents;
+  set.ambient = ambient;
+  return set;
+}
+
+std::string to_wire(const LightFrame& message, lightwell_LightFrame& wire, std::vector<lightwell_Light>& buffer) {
+  if (message.lights.size() > kMaxWireLights)
+    return std::to_string(message.lights.size()) + " lights, at most " + std::to_string(kMaxWireLights);
+  header_to_wire(message.header, wire.header);
+  wire.has_parents = message.has_parents;
+  set_rgb(wire.ambient, message.ambient);
+  buffer.resize(message.lights.size());
+  for (std::size_t i = 0; i < buffer.size(); ++i) {
+    const DirectionalLight& light = message.lights[i];
+    for (int c = 0; c < 3; ++c) buffer[i].direction[c] = light.direction[c];
+    set_rgb(buffer[i].illuminance, light.illuminance);
+    buffer[i].id = light.id;
+    buffer[i].parent = light.parent;
+  }
+  const auto count = static_cast<std::uint32_t>(buffer.size());
+  wire.lights = {count, count, buffer.data(), false};
+  return {};
+}
+
+std::string from_wire(const lightwell_LightFrame& wire, LightFrame& message) {
+  if (const char* wrong = check_header(wire.header)) return wrong;
+  if (!is_power(wire.ambient)) return "ambient is not finite and >= 0";
+  if (wire.lights._length > kMaxWireLights) return "too many lights";
+  const std::span lights(wire.lights._buffer, wire.lights._length);
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    if (auto wrong = check_light(lights[i], i, wire.has_parents); !wrong.empty()) return wrong;
+
+  header_from_wire(wire.header, wire.probe, message.header);
+  message.has_parents = wire.has_parents;
+  message.ambient = get_rgb(wire.ambient);
+  message.lights.resize(lights.size());
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    DirectionalLight& light = message.lights[i];
+    light.direction = {lights[i].direction[0], lights[i].direction[1], lights[i].direction[2]};
+    // Beyond float rounding of a unit vector; within it the numbers stay as they were sent.
+    if (std::abs(squared_norm(lights[i].direction) - 1) > 1e-6f) light.direction.normalize();
+    light.illuminance = get_rgb(lights[i].illuminance);
+    light.id = lights[i].id;
+    light.parent = wire.has_parents ? lights[i].parent : -1;
+  }
+  return {};
+}
+
+std::string to_wire(const EnvironmentFrame& message, lightwell_EnvironmentFrame& wire,
+                    std::vector<std::uint16_t>& buffer) {
+  const PolarMap& map = message.map;
+  const PolarGrid& grid = map.grid;
+  if (grid.rings < 1 || grid.rings > static_cast<int>(kMaxRings) || grid.sectors < 1 ||
+      grid.sectors > static_cast<int>(kMaxSectors) || (map.channels != 1 && map.channels != 3) ||
+      map.radiance.size() != grid.size() * static_cast<std::size_t>(map.channels) ||
+      map.radiance.size() > kMaxWireHalves)
+    return "map of " + std::to_string(grid.rings) + " x " + std::to_string(grid.sectors) + " x " +
+           std::to_string(map.channels) + " does not fit";
+  header_to_wire(message.header, wire.header);
+  wire.rings = static_cast<std::uint32_t>(grid.rings);
+  wire.sectors = static_cast<std::uint32_t>(grid.sectors);
+  wire.channels = static_cast<std::uint32_t>(map.channels);
+  wire.theta_max_rad = static_cast<float>(grid.theta_max_rad);
+  wire.scale = scale_for(map.radiance);
+  const float inverse = 1 / wire.scale;
+  buffer.resize(map.radiance.size());
+  for (std::size_t i = 0; i < buffer.size(); ++i)
+    buffer[i] = Eigen::numext::bit_cast<std::uint16_t>(Eigen::half(map.radiance[i] * inverse));
+  const auto count = static_cast<std::uint32_t>(buffer.size());
+  wire.half_radiance = {count, count, buffer.data(), false};
+  return {};
+}
+
+std::string from_wire(const lightwell_EnvironmentFrame& wire, EnvironmentFrame& message) {
+  if (const char* wrong = check_header(wire.header)) return wrong;
+  if (wire.rings < 1 || wire.rings > kMaxRings) return "rings are not within 1 to " + std::to_string(kMaxRings);
+  if (wire.sectors < 1 || wire.sectors > kMaxSectors)
+    return "sectors are not within 1 to " + std::to_string(kMaxSectors);
+  if (wire.channels != 1 && wire.channels != 3) return "channels are neither 1 nor 3";
+  const std::span halves(wire.half_radiance._buffer, wire.half_radiance._length);
+  if (halves.size() != std::size_t{wire.rings} * wire.sectors * wire.channels) return "radiance is not the grid's size";
+  // A float just above pi is pi.
+  if (!(wire.theta_max_rad > 0 && wire.theta_max_rad <= static_cast<float>(kPi)))
+    return "theta_max_rad is not within 0 to pi";
+  // 2^112 × 65504 is still a float.
+  if (!(wire.scale > 0 && wire.scale <= std::ldexp(1.0f, 112))) return "scale is not positive and finite";
+  // Sign bit, or all exponent bits: negative, infinite, NaN.
+  if (std::any_of(halves.begin(), halves.end(),
+                  [](std::uint16_t h) { return (h & 0x8000) != 0 || (h & 0x7c00) == 0x7c00; }))
+    return "radiance is not finite and >= 0";
+
+  header_from_wire(wire.header, wire.probe, message.header);
+  const PolarGrid grid{static_cast<int>(wire.rings), static_cast<int>(wire.sectors),
+                       std::min(static_cast<double>(wire.theta_max_rad), kPi)};
+  const int channels = static_cast<int>(wire.channels);
+  if (message.map.grid != grid || message.map.channels != channels || message.map.radiance.size() != halves.size())
+    message.map = PolarMap::make(grid, channels);
+  for (std::size_t i = 0; i < halves.size(); ++i)
+    message.map.radiance[i] = static_cast<float>(Eigen::numext::bit_cast<Eigen::half>(halves[i])) * wire.scale;
+  message.map.peak = message.map.radiance;
+  message.map.coverage = wire.header.measured_part;
+  return {};
+}
+
+std::string to_wire(const ProbeStatus& message, lightwell_ProbeStatus& wire, std::vector<std::uint16_t>&) {
+  set_text(wire.version, message.version);
+  wire.uptime_s = message.uptime_s;
+  set_text(wire.source, message.source);
+  set_text(wire.source_state, message.source_state);
+  set_text(wire.source_description, message.source_description);
+  wire.nominal_rate_hz = message.nominal_rate_hz;
+  wire.measured_rate_hz = message.measured_rate_hz;
+  wire.published = message.published;
+  wire.received = message.received;
+  wire.skipped = message.skipped;
+  wire.lost = message.lost;
+  wire.incomplete = message.incomplete;
+  wire.reconnects = message.reconnects;
+  wire.dropped_by_pipeline = message.dropped_by_pipeline;
+  wire.latency_ms_p50 = message.latency_ms_p50;
+  wire.latency_ms_p99 = message.latency_ms_p99;
+  wire.frame_age_ms = message.frame_age_ms;
+  set_text(wire.calibration_id, message.calibration_id);
+  set_text(wire.calibration_verdict, message.calibration_verdict);
+  wire.recording = message.recording;
+  set_text(wire.recording_file, message.recording_file);
+  wire.recording_frames = message.recording_frames;
+  wire.recording_dropped = message.recording_dropped;
+  set_text(wire.alarm, message.alarm);
+  return {};
+}
+
+std::string from_wire(const lightwell_ProbeStatus& wire, ProbeStatus& message) {
+  if (!is_printable(wire.version) || !is_printable(wire.source) || !is_printable(wire.source_state) ||
+      !is_printable(wire.source_description) || !is_printable(wire.calibration_id) ||
+      !is_printable(wire.calibration_verdict) || !is_printable(wire.recording_file) || !is_printable(wire.alarm))
+    return "a text has control characters";
+  message.probe = get_text(wire.probe);
+  message.version = get_text(wire.version);
+  message.uptime_s = wire.uptime_s;
+  message.source = get_text(wire.source);
+  message.source_state = get_text(wire.source_state);
+  message.source_description = get_text(wire.source_description);
+  message.nominal_rate_hz = wire.nominal_rate_hz;
+  message.measured_rate_hz = wire.measured_rate_hz;
+  message.published = wire.published;
+  message.received = wire.received;
+  message.skipped = wire.skipped;
+  message.lost = wire.lost;
+  message.incomplete = wire.incomplete;
+  message.reconnects = wire.reconnects;
+  message.dropped_by_pipeline = wire.dropped_by_pipeline;
+  message.latency_ms_p50 = wire.latency_ms_p50;
+  message.latency_ms_p99 = wire.latency_ms_p99;
+  message.frame_age_ms = wire.frame_age_ms;
+  message.calibration_id = get_text(wire.calibration_id);
+  message.calibration_verdict = get_text(wire.calibration_verdict);
+  message.recording = wire.recording;
+  message.recording_file = get_text(wire.recording_file);
+  message.recording_frames = wire.recording_frames;
+  message.recording_dropped = wire.recording_dropped;
+  message.alarm = get_text(wire.alarm);
+  return {};
+}
+
+}  // namespace lightwell
