@@ -41,7 +41,8 @@ Status check(const DdsOptions& options) {
   return {};
 }
 
-// The interface passed check(), and Linux allows neither '"' nor '<' from a sane tool, but names are free: escape.
+// The interface passed check(), and Linux allows neither '"' nor '<' from a sane tool, but names are free:
+// escape.
 std::string xml_escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -62,8 +63,8 @@ std::string configuration(const DdsOptions& options) {
   const char* attribute = is_ipv4(options.interface) ? "address" : "name";
   // multicast="true": Linux does not flag lo as multicast capable, though it is.
   // WhcHigh: a large map on its way to a slow reader must not look like congestion (the default is 500 kB).
-  return "<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface " + std::string(attribute) + "=\"" +
-         xml_escaped(options.interface) +
+  return "<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface " + std::string(attribute) +
+         "=\"" + xml_escaped(options.interface) +
          "\" multicast=\"true\"/></Interfaces><AllowMulticast>true</AllowMulticast></General>"
          "<Internal><Watermarks><WhcHigh>64MB</WhcHigh></Watermarks></Internal></Domain></CycloneDDS>";
 }
@@ -76,8 +77,9 @@ Result<std::shared_ptr<DdsDomain>> DdsDomain::open(const DdsOptions& options) {
   std::weak_ptr<DdsDomain>& slot = registry().open[options.domain];
   if (auto existing = slot.lock()) {
     if (existing->options_.interface == options.interface) return existing;
-    return Error{ErrorKind::usage, "DDS domain " + std::to_string(options.domain) + " is already open on interface '" +
-                                       existing->options_.interface + "'"};
+    return Error{ErrorKind::usage, "DDS domain " + std::to_string(options.domain) +
+                                       " is already open on interface '" + existing->options_.interface +
+                                       "'"};
   }
   std::shared_ptr<DdsDomain> made(new DdsDomain(options));
   const auto id = static_cast<dds_domainid_t>(options.domain);

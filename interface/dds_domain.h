@@ -15,12 +15,14 @@ struct DdsOptions {
   std::string interface = "lo";  // network interface, by name or address; "lo" reaches this machine only
 };
 
-// A participant on a DDS domain, with multicast discovery on one interface. The configuration is made here and does not
-// depend on the surroundings, except that a user who sets CYCLONEDDS_URI gets that configuration instead.
-// Readers and writers share the object and keep it alive. Opening a domain twice in a process gives the same object.
+// A participant on a DDS domain, with multicast discovery on one interface. The configuration is made here
+// and does not depend on the surroundings, except that a user who sets CYCLONEDDS_URI gets that configuration
+// instead. Readers and writers share the object and keep it alive. Opening a domain twice in a process gives
+// the same object.
 class DdsDomain {
  public:
-  // usage: domain out of range, no such interface, or the domain is already open on another one; failed: the network.
+  // usage: domain out of range, no such interface, or the domain is already open on another one; failed: the
+  // network.
   static Result<std::shared_ptr<DdsDomain>> open(const DdsOptions& options);
   ~DdsDomain();
   DdsDomain(const DdsDomain&) = delete;

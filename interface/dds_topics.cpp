@@ -46,13 +46,14 @@ Qos make_qos() {
   constexpr bool reliable = Wire<Message>::kReliable;
   dds_qset_reliability(qos.get(), reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
   dds_qset_durability(qos.get(), reliable ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
-  dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, 1, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED,
-                              DDS_LENGTH_UNLIMITED);
+  dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, 1, DDS_LENGTH_UNLIMITED,
+                              DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 1);
   dds_qset_liveliness(qos.get(), DDS_LIVELINESS_AUTOMATIC,
                       std::chrono::duration_cast<std::chrono::nanoseconds>(kLiveliness).count());
   // A stranger's type that cannot be read as ours is never matched.
-  dds_qset_type_consistency(qos.get(), DDS_TYPE_CONSISTENCY_ALLOW_TYPE_COERCION, true, true, false, false, true);
+  dds_qset_type_consistency(qos.get(), DDS_TYPE_CONSISTENCY_ALLOW_TYPE_COERCION, true, true, false, false,
+                            true);
   return qos;
 }
 
@@ -62,7 +63,8 @@ Error failure(const char* topic, const char* what, dds_return_t code) {
 
 template <class Message>
 dds_entity_t make_topic(const DdsDomain& domain) {
-  return dds_create_topic(domain.participant(), &Wire<Message>::descriptor(), Wire<Message>::kTopic, nullptr, nullptr);
+  return dds_create_topic(domain.participant(), &Wire<Message>::descriptor(), Wire<Message>::kTopic, nullptr,
+                          nullptr);
 }
 
 }  // namespace
@@ -85,15 +87,16 @@ template <class Message>
 Result<std::unique_ptr<DdsWriter<Message>>> DdsWriter<Message>::create(std::shared_ptr<DdsDomain> domain,
                                                                        const std::string& probe) {
   auto impl = std::make_unique<Impl>();
-  const bool printable = std::all_of(probe.begin(), probe.end(), [](char c) { return c >= 0x20 && c < 0x7f; });
+  const bool printable =
+      std::all_of(probe.begin(), probe.end(), [](char c) { return c >= 0x20 && c < 0x7f; });
   if (probe.empty() || probe.size() >= sizeof impl->wire.probe || !printable)
     return Error{ErrorKind::usage, "probe name '" + probe + "' must be 1 to 63 printable ASCII characters"};
   std::memcpy(impl->wire.probe, probe.data(), probe.size());
   impl->domain = std::move(domain);
   impl->topic = Entity(make_topic<Message>(*impl->domain));
   if (!impl->topic.ok()) return failure(Wire<Message>::kTopic, "cannot create", impl->topic.get());
-  impl->writer =
-      Entity(dds_create_writer(impl->domain->participant(), impl->topic.get(), make_qos<Message>().get(), nullptr));
+  impl->writer = Entity(
+      dds_create_writer(impl->domain->participant(), impl->topic.get(), make_qos<Message>().get(), nullptr));
   if (!impl->writer.ok()) return failure(Wire<Message>::kTopic, "cannot write", impl->writer.get());
   return std::unique_ptr<DdsWriter>(new DdsWriter(std::move(impl)));
 }
@@ -104,8 +107,8 @@ Status DdsWriter<Message>::write(const Message& message) {
     return Error{ErrorKind::bad_input, std::string("DDS topic ") + Wire<Message>::kTopic + ": " + wrong};
   const dds_return_t code = dds_write(impl_->writer.get(), &impl_->wire);
   if (code == DDS_RETCODE_TIMEOUT)
-    return Error{ErrorKind::failed,
-                 std::string("DDS topic ") + Wire<Message>::kTopic + ": a reader is too slow, message dropped"};
+    return Error{ErrorKind::failed, std::string("DDS topic ") + Wire<Message>::kTopic +
+                                        ": a reader is too slow, message dropped"};
   if (code != DDS_RETCODE_OK) return failure(Wire<Message>::kTopic, "cannot send", code);
   return {};
 }
@@ -204,7 +207,8 @@ Result<std::unique_ptr<DdsReader<Message>>> DdsReader<Message>::create(std::shar
   const dds_entity_t participant = impl->domain->participant();
   impl->topic = Entity(make_topic<Message>(*impl->domain));
   if (!impl->topic.ok()) return failure(Wire<Message>::kTopic, "cannot create", impl->topic.get());
-  impl->reader = Entity(dds_create_reader(participant, impl->topic.get(), make_qos<Message>().get(), nullptr));
+  impl->reader =
+      Entity(dds_create_reader(participant, impl->topic.get(), make_qos<Message>().get(), nullptr));
   if (!impl->reader.ok()) return failure(Wire<Message>::kTopic, "cannot read", impl->reader.get());
   impl->condition = Entity(dds_create_readcondition(impl->reader.get(), DDS_ANY_STATE));
   impl->waitset = Entity(dds_create_waitset(participant));

@@ -15,23 +15,28 @@ namespace lightwell {
 
 // Writers and readers of the three topics of interface/lightwell.idl. Quality of service, and why:
 //
-//   LightFrame        best effort, keep last 1, volatile. Only the newest frame matters: a lost one is not sent again,
-//                     and a newer one never waits for it, as it would behind a reliable reader's gap. The writer keeps
-//                     nothing for anybody, so that a reader that is slow, stopped or dead costs it nothing.
-//   EnvironmentFrame  reliable, keep last 1, transient local, never blocking. A map is many packets, too many for a small
+//   LightFrame        best effort, keep last 1, volatile. Only the newest frame matters: a lost one is not
+//   sent again,
+//                     and a newer one never waits for it, as it would behind a reliable reader's gap. The
+//                     writer keeps nothing for anybody, so that a reader that is slow, stopped or dead costs
+//                     it nothing.
+//   EnvironmentFrame  reliable, keep last 1, transient local, never blocking. A map is many packets, too many
+//   for a small
 //                     socket buffer: lost ones are repaired. A late joiner gets the newest map at once.
-//   ProbeStatus       reliable, keep last 1, transient local, never blocking. A late joiner gets the state at once.
+//   ProbeStatus       reliable, keep last 1, transient local, never blocking. A late joiner gets the state at
+//   once.
 //
-// All: keyed by probe, so that several probes share a domain; automatic liveliness with a lease of kLiveliness, after
-// which a crashed or cut-off writer counts as gone (one that ends is gone at once); a write never waits: where a
-// reliable reader holds the writer up, the message is dropped and write says so.
+// All: keyed by probe, so that several probes share a domain; automatic liveliness with a lease of
+// kLiveliness, after which a crashed or cut-off writer counts as gone (one that ends is gone at once); a
+// write never waits: where a reliable reader holds the writer up, the message is dropped and write says so.
 inline constexpr std::chrono::milliseconds kLiveliness{2000};
 
 template <class Message>
 class DdsWriter {
  public:
   // probe: 1 to 63 printable ASCII characters. usage: the name; failed: DDS.
-  static Result<std::unique_ptr<DdsWriter>> create(std::shared_ptr<DdsDomain> domain, const std::string& probe);
+  static Result<std::unique_ptr<DdsWriter>> create(std::shared_ptr<DdsDomain> domain,
+                                                   const std::string& probe);
   ~DdsWriter();
   DdsWriter(const DdsWriter&) = delete;
   DdsWriter& operator=(const DdsWriter&) = delete;
@@ -52,8 +57,9 @@ struct DdsReaderOptions {
   std::string probe;  // empty: the first that is heard, until it is gone
 };
 
-// Gives the newest message that was not given yet; older ones are skipped. What a stranger sends wrong (NaN, directions
-// that are not unit, counts that do not fit, parents that lead nowhere) is refused and counted. One thread at a time.
+// Gives the newest message that was not given yet; older ones are skipped. What a stranger sends wrong (NaN,
+// directions that are not unit, counts that do not fit, parents that lead nowhere) is refused and counted.
+// One thread at a time.
 template <class Message>
 class DdsReader {
  public:
@@ -63,8 +69,8 @@ class DdsReader {
   DdsReader(const DdsReader&) = delete;
   DdsReader& operator=(const DdsReader&) = delete;
 
-  // Waits up to timeout (zero: only what is there) for a message; reuses the memory of `message`, which is unchanged
-  // where false is returned.
+  // Waits up to timeout (zero: only what is there) for a message; reuses the memory of `message`, which is
+  // unchanged where false is returned.
   bool take(Message& message, std::chrono::milliseconds timeout);
   // Writers of the topic that are alive now, of any probe; 0: nobody publishes.
   [[nodiscard]] int writers() const;

@@ -39,7 +39,9 @@ void set_rgb(float (&to)[3], const Rgb& from) {
   for (int c = 0; c < 3; ++c) to[c] = from[c];
 }
 
-Rgb get_rgb(const float (&from)[3]) { return {from[0], from[1], from[2]}; }
+Rgb get_rgb(const float (&from)[3]) {
+  return {from[0], from[1], from[2]};
+}
 
 bool is_power(const float (&rgb)[3]) {
   return std::all_of(rgb, rgb + 3, [](float v) { return std::isfinite(v) && v >= 0; });
@@ -65,8 +67,10 @@ const char* check_header(const lightwell_FrameHeader& wire) {
     return "coverage is neither hemisphere nor sphere";
   if (!(wire.measured_part >= 0 && wire.measured_part <= 1)) return "measured_part is not within 0 to 1";
   if (!is_power(wire.total_illuminance)) return "total_illuminance is not finite and >= 0";
-  if (!(std::isfinite(wire.delay_frames) && wire.delay_frames >= 0)) return "delay_frames is not finite and >= 0";
-  if (!is_printable(wire.timecode) || !is_printable(wire.calibration_id)) return "a name has control characters";
+  if (!(std::isfinite(wire.delay_frames) && wire.delay_frames >= 0))
+    return "delay_frames is not finite and >= 0";
+  if (!is_printable(wire.timecode) || !is_printable(wire.calibration_id))
+    return "a name has control characters";
   return nullptr;
 }
 
@@ -85,7 +89,9 @@ void header_from_wire(const lightwell_FrameHeader& wire, const char (&probe)[64]
   header.delay_frames = wire.delay_frames;
 }
 
-float squared_norm(const float (&v)[3]) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
+float squared_norm(const float (&v)[3]) {
+  return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+}
 
 std::string check_light(const lightwell_Light& light, std::size_t index, bool has_parents) {
   const auto wrong = [&](const char* what) { return "light " + std::to_string(index) + ": " + what; };
@@ -119,7 +125,8 @@ LightSet LightFrame::light_set() const {
   return set;
 }
 
-std::string to_wire(const LightFrame& message, lightwell_LightFrame& wire, std::vector<lightwell_Light>& buffer) {
+std::string to_wire(const LightFrame& message, lightwell_LightFrame& wire,
+                    std::vector<lightwell_Light>& buffer) {
   if (message.lights.size() > kMaxWireLights)
     return std::to_string(message.lights.size()) + " lights, at most " + std::to_string(kMaxWireLights);
   header_to_wire(message.header, wire.header);
@@ -189,12 +196,14 @@ std::string to_wire(const EnvironmentFrame& message, lightwell_EnvironmentFrame&
 
 std::string from_wire(const lightwell_EnvironmentFrame& wire, EnvironmentFrame& message) {
   if (const char* wrong = check_header(wire.header)) return wrong;
-  if (wire.rings < 1 || wire.rings > kMaxRings) return "rings are not within 1 to " + std::to_string(kMaxRings);
+  if (wire.rings < 1 || wire.rings > kMaxRings)
+    return "rings are not within 1 to " + std::to_string(kMaxRings);
   if (wire.sectors < 1 || wire.sectors > kMaxSectors)
     return "sectors are not within 1 to " + std::to_string(kMaxSectors);
   if (wire.channels != 1 && wire.channels != 3) return "channels are neither 1 nor 3";
   const std::span halves(wire.half_radiance._buffer, wire.half_radiance._length);
-  if (halves.size() != std::size_t{wire.rings} * wire.sectors * wire.channels) return "radiance is not the grid's size";
+  if (halves.size() != std::size_t{wire.rings} * wire.sectors * wire.channels)
+    return "radiance is not the grid's size";
   // A float just above pi is pi.
   if (!(wire.theta_max_rad > 0 && wire.theta_max_rad <= static_cast<float>(kPi)))
     return "theta_max_rad is not within 0 to pi";
@@ -209,10 +218,12 @@ std::string from_wire(const lightwell_EnvironmentFrame& wire, EnvironmentFrame& 
   const PolarGrid grid{static_cast<int>(wire.rings), static_cast<int>(wire.sectors),
                        std::min(static_cast<double>(wire.theta_max_rad), kPi)};
   const int channels = static_cast<int>(wire.channels);
-  if (message.map.grid != grid || message.map.channels != channels || message.map.radiance.size() != halves.size())
+  if (message.map.grid != grid || message.map.channels != channels ||
+      message.map.radiance.size() != halves.size())
     message.map = PolarMap::make(grid, channels);
   for (std::size_t i = 0; i < halves.size(); ++i)
-    message.map.radiance[i] = static_cast<float>(Eigen::numext::bit_cast<Eigen::half>(halves[i])) * wire.scale;
+    message.map.radiance[i] =
+        static_cast<float>(Eigen::numext::bit_cast<Eigen::half>(halves[i])) * wire.scale;
   message.map.peak = message.map.radiance;
   message.map.coverage = wire.header.measured_part;
   return {};
@@ -249,7 +260,8 @@ std::string to_wire(const ProbeStatus& message, lightwell_ProbeStatus& wire, std
 std::string from_wire(const lightwell_ProbeStatus& wire, ProbeStatus& message) {
   if (!is_printable(wire.version) || !is_printable(wire.source) || !is_printable(wire.source_state) ||
       !is_printable(wire.source_description) || !is_printable(wire.calibration_id) ||
-      !is_printable(wire.calibration_verdict) || !is_printable(wire.recording_file) || !is_printable(wire.alarm))
+      !is_printable(wire.calibration_verdict) || !is_printable(wire.recording_file) ||
+      !is_printable(wire.alarm))
     return "a text has control characters";
   message.probe = get_text(wire.probe);
   message.version = get_text(wire.version);

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Between the messages of probe_messages.h and the C types that idlc makes of lightwell.idl. Internal to interface/dds_*.
+// Between the messages of probe_messages.h and the C types that idlc makes of lightwell.idl. Internal to
+// interface/dds_*.
 #include <string>
 
 #include "interface/lightwell.h"  // generated from lightwell.idl
@@ -10,8 +11,8 @@
 
 namespace lightwell {
 
-// What a topic is on the wire: its C type, description, name, and whether lost messages are repaired and the newest
-// is kept for late joiners.
+// What a topic is on the wire: its C type, description, name, and whether lost messages are repaired and the
+// newest is kept for late joiners.
 template <class Message>
 struct Wire;
 template <>
@@ -41,12 +42,14 @@ inline constexpr std::size_t kMaxWireHalves = 12582912;
 inline constexpr std::uint32_t kMaxRings = 4096;
 inline constexpr std::uint32_t kMaxSectors = 8192;
 
-// Fills `wire` from a message; the sequences point into `buffer`, which must live as long. The probe's name is the
-// writer's business. Empty string: good; else what does not fit.
-std::string to_wire(const LightFrame& message, lightwell_LightFrame& wire, std::vector<lightwell_Light>& buffer);
+// Fills `wire` from a message; the sequences point into `buffer`, which must live as long. The probe's name
+// is the writer's business. Empty string: good; else what does not fit.
+std::string to_wire(const LightFrame& message, lightwell_LightFrame& wire,
+                    std::vector<lightwell_Light>& buffer);
 std::string to_wire(const EnvironmentFrame& message, lightwell_EnvironmentFrame& wire,
                     std::vector<std::uint16_t>& buffer);
-std::string to_wire(const ProbeStatus& message, lightwell_ProbeStatus& wire, std::vector<std::uint16_t>& buffer);
+std::string to_wire(const ProbeStatus& message, lightwell_ProbeStatus& wire,
+                    std::vector<std::uint16_t>& buffer);
 
 // Checks first, then fills. Empty string: good; else what is wrong, and the message is unchanged.
 std::string from_wire(const lightwell_LightFrame& wire, LightFrame& message);

@@ -9,7 +9,8 @@
 namespace lightwell {
 
 Result<HostPort> parse_host_port(const std::string& text) {
-  const Error wrong{ErrorKind::usage, "'" + text + "' is not ADDRESS:PORT (for example 127.0.0.1:8650 or [::1]:8650)"};
+  const Error wrong{ErrorKind::usage,
+                    "'" + text + "' is not ADDRESS:PORT (for example 127.0.0.1:8650 or [::1]:8650)"};
   const auto colon = text.rfind(':');
   if (colon == std::string::npos) return wrong;
   HostPort result;

@@ -14,7 +14,8 @@ struct HostPort {
   std::uint16_t port = 0;
 };
 
-// "ADDRESS:PORT", IPv6 as "[ADDRESS]:PORT"; port 0 to 65535. Fails with usage, naming the text and what is allowed.
+// "ADDRESS:PORT", IPv6 as "[ADDRESS]:PORT"; port 0 to 65535. Fails with usage, naming the text and what is
+// allowed.
 Result<HostPort> parse_host_port(const std::string& text);
 
 // 127.0.0.0/8, ::1, or "localhost": nothing that another machine can reach or a name server can redirect.

@@ -14,16 +14,16 @@ namespace lightwell {
 // The messages of interface/lightwell.idl as the rest of the code sees them. Units and meaning stand there.
 
 struct FrameHeader {
-  std::string probe;                  // set by the writer
-  std::uint64_t number = 0;           // published frames of the daemon, from 1
-  std::uint64_t sequence = 0;         // the camera's
-  std::int64_t capture_mono_ns = 0;   // comparable with this machine's clock only where the daemon runs on it
+  std::string probe;                 // set by the writer
+  std::uint64_t number = 0;          // published frames of the daemon, from 1
+  std::uint64_t sequence = 0;        // the camera's
+  std::int64_t capture_mono_ns = 0;  // comparable with this machine's clock only where the daemon runs on it
   std::int64_t capture_utc_ns = 0;
   std::int64_t publish_mono_ns = 0;
   std::string timecode;
   std::string calibration_id;
   Coverage coverage = Coverage::hemisphere;
-  float measured_part = 0;            // of the whole sphere, 0 to 1
+  float measured_part = 0;  // of the whole sphere, 0 to 1
   Rgb total_illuminance = Rgb::Zero();
   float delay_frames = 0;
 };

@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "interface/dds_wire.h"
+
+#include <dds/dds.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+#include <limits>
+
+#include "interface/dds_topics.h"
+#include "tests/support/dds.h"
+
+namespace lightwell {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// A good frame of two lights as a stranger would send it; the tests spoil one thing each.
+struct Lights {
+  lightwell_Light lights[2] = {{{0, 1, 0}, {1, 2, 3}, 1, -1}, {{1, 0, 0}, {1, 2, 3}, 2, 0}};
+  lightwell_LightFrame frame{};
+  Lights() {
+    std::strcpy(frame.probe, "stranger");
+    frame.has_parents = true;
+    frame.lights = {2, 2, lights, false};
+  }
+};
+
+struct Map {
+  std::uint16_t halves[12] = {};
+  lightwell_EnvironmentFrame frame{};
+  Map() {
+    std::strcpy(frame.probe, "stranger");
+    frame.rings = 3;
+    frame.sectors = 4;
+    frame.channels = 1;
+    frame.theta_max_rad = 1.5f;
+    frame.scale = 1;
+    frame.half_radiance = {12, 12, halves, false};
+  }
+};
+
+TEST(DdsWire, GoodMessagesOfAStrangerAreRead) {
+  LightFrame lights;
+  EXPECT_EQ(from_wire(Lights().frame, lights), "");
+  EXPECT_EQ(lights.header.probe, "stranger");
+  EXPECT_EQ(lights.lights.size(), 2u);
+  EnvironmentFrame map;
+  EXPECT_EQ(from_wire(Map().frame, map), "");
+  EXPECT_EQ(map.map.grid.rings, 3);
+}
+
+TEST(DdsWire, MalformedLightsAreRefusedAndLeaveTheMessageAlone) {
+  const std::function<void(Lights&)> spoilers[] = {
+      [](Lights& l) { l.lights[1].direction[0] = kNan; },
+      [](Lights& l) { l.lights[1].direction[0] = 1.01f; },
+      [](Lights& l) { l.lights[1].direction[0] = 0; },
+      [](Lights& l) { l.lights[0].direction[1] = kInfinity; },
+      [](Lights& l) { l.lights[0].illuminance[2] = kNan; },
+      [](Lights& l) { l.lights[0].illuminance[2] = kInfinity; },
+      [](Lights& l) { l.lights[0].illuminance[2] = -1; },
+      [](Lights& l) { l.lights[0].parent = 0; },
+      [](Lights& l) { l.lights[1].parent = 1; },
+      [](Lights& l) { l.lights[1].parent = -1; },
+      [](Lights& l) { l.frame.ambient[0] = kNan; },
+      [](Lights& l) { l.frame.header.total_illuminance[0] = -1; },
+      [](Lights& l) { l.frame.header.measured_part = 1.5f; },
+      [](Lights& l) { l.frame.header.measured_part = kNan; },
+      [](Lights& l) { l.frame.header.delay_frames = kInfinity; },
+      [](Lights& l) { std::strcpy(l.frame.header.timecode, "\x1b[2J"); },
+      [](Lights& l) { l.frame.lights._length = 1u << 20; },
+  };
+  int index = 0;
+  for (const auto& spoil : spoilers) {
+    Lights spoilt;
+    spoil(spoilt);
+    LightFrame message;
+    message.header.number = 99;
+    EXPECT_NE(from_wire(spoilt.frame, message), "") << "spoiler " << index;
+    EXPECT_EQ(message.header.number, 99u);
+    EXPECT_TRUE(message.lights.empty());
+    ++index;
+  }
+}
+
+TEST(DdsWire, MalformedMapsAreRefused) {
+  const std::function<void(Map&)> spoilers[] = {
+      [](Map& m) { m.frame.rings = 0; },
+      [](Map& m) { m.frame.rings = 4; },
+      [](Map& m) { m.frame.rings = 0x80000003; },
+      [](Map& m) { m.frame.sectors = 0xffffffff; },
+      [](Map& m) { m.frame.channels = 2; },
+      [](Map& m) { m.frame.channels = 3; },
+      [](Map& m) { m.frame.theta_max_rad = kNan; },
+      [](Map& m) { m.frame.theta_max_rad = 3.2f; },
+      [](Map& m) { m.frame.theta_max_rad = 0; },
+      [](Map& m) { m.frame.scale = 0; },
+      [](Map& m) { m.frame.scale = kNan; },
+      [](Map& m) { m.frame.scale = 1e38f; },
+      [](Map& m) { m.halves[5] = 0x7c00; },
+      [](Map& m) { m.halves[5] = 0x7e00; },
+      [](Map& m) { m.halves[5] = 0xbc00; },
+  };
+  int index = 0;
+  for (const auto& spoil : spoilers) {
+    Map spoilt;
+    spoil(spoilt);
+    EnvironmentFrame message;
+    EXPECT_NE(from_wire(spoilt.frame, message), "") << "spoiler " << index;
+    EXPECT_TRUE(message.map.radiance.empty());
+    ++index;
+  }
+}
+
+TEST(DdsWire, NearlyUnitDirectionsBecomeUnit) {
+  Lights sent;
+  sent.lights[0].direction[1] = 1.0005f;
+  LightFrame message;
+  ASSERT_EQ(from_wire(sent.frame, message), "");
+  EXPECT_FLOAT_EQ(message.lights[0].direction.norm(), 1.0f);
+}
+
+TEST(DdsWire, HugeRadianceAndTinyRadianceSurviveTheScale) {
+  for (const float value : {1e-30f, 1e-6f, 1.0f, 65504.0f, 1e30f}) {
+    EnvironmentFrame sent;
+    sent.map = PolarMap::make({.rings = 1, .sectors = 1}, 1);
+    sent.map.radiance[0] = value;
+    lightwell_EnvironmentFrame wire{};
+    std::vector<std::uint16_t> buffer;
+    ASSERT_EQ(to_wire(sent, wire, buffer), "");
+    EnvironmentFrame received;
+    ASSERT_EQ(from_wire(wire, received), "") << value;
+    // 11 significant bits.
+    EXPECT_NEAR(received.map.radiance[0], value, value * 0x1p-11f);
+  }
+}
+
+// Over the network too: a reader counts what it refuses, says why, and goes on.
+TEST(DdsWire, ReaderRefusesAStrangersNonsense) {
+  const auto domain = DdsDomain::open(test::own_domain()).value();
+  const auto reader = LightReader::create(domain).value();
+  const dds_entity_t topic = dds_create_topic(domain->participant(), &lightwell_LightFrame_desc,
+                                              "lightwell/LightFrame", nullptr, nullptr);
+  ASSERT_GT(topic, 0);
+  dds_qos_t* qos = dds_create_qos();  // readers ask for a lease
+  dds_qset_liveliness(qos, DDS_LIVELINESS_AUTOMATIC, DDS_SECS(1));
+  const dds_entity_t writer = dds_create_writer(domain->participant(), topic, qos, nullptr);
+  dds_delete_qos(qos);
+  ASSERT_GT(writer, 0);
+  Lights lights;
+  lights.lights[1].direction[0] = kNan;
+  ASSERT_EQ(dds_write(writer, &lights.frame), DDS_RETCODE_OK);
+  LightFrame message;
+  EXPECT_FALSE(reader->take(message, std::chrono::milliseconds(0)));
+  EXPECT_EQ(reader->refused(), 1u);
+  EXPECT_EQ(reader->refusal(), "light 1: direction is not unit");
+  lights.lights[1].direction[0] = 1;
+  ASSERT_EQ(dds_write(writer, &lights.frame), DDS_RETCODE_OK);
+  EXPECT_TRUE(reader->take(message, std::chrono::seconds(20)));
+  dds_delete(writer);
+  dds_delete(topic);
+}
+
+}  // namespace
+}  // namespace lightwell
