@@ -145,7 +145,7 @@ TEST(EnvironmentIo, DamagedBytesNeverCrash) {
   const std::string seeds[] = {read_text_file(folder.path() / "a.exr").value(), hdr("-Y 6 +X 9", coded)};
   std::mt19937 generator(2);
   for (const std::string& seed : seeds)
-    for (int i = 0; i < 1500; ++i) {
+    for (int i = 0; i < 400; ++i) {
       std::string bytes = seed;
       const std::size_t span = i % 2 == 0 ? std::min<std::size_t>(400, bytes.size()) : bytes.size();
       for (int k = 0; k < 1 + i % 4; ++k) bytes[generator() % span] = static_cast<char>(generator());
