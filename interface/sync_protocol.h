@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// What the sync board and the daemon say to each other; C11, shared with the firmware. The same bytes on UART and USB.
+// What the sync board and the daemon say to each other; C11, shared with the firmware. The same bytes on UART
+// and USB.
 //
 // A frame on the wire: COBS(header, payload, CRC) and a zero byte. All integers little-endian.
 //   offset 0  u8   protocol version, SYNC_PROTOCOL_VERSION
@@ -25,8 +26,8 @@ enum sync_message_type {
   SYNC_HELLO_REQUEST = 0x01,  // host, no payload
   SYNC_HELLO = 0x02,          // board: u32 schema hash, u32 capabilities, u8 version[3], u8 reserved (0)
   SYNC_PING = 0x03,           // host: u64 t_host_ns
-  SYNC_PONG = 0x04,           // board: u64 t_host_ns as received, u64 t_board_us on receipt, u64 t_board_us on sending
-  SYNC_FAULT = 0x7f           // board: u8 sync_fault, u8 offending message type
+  SYNC_PONG = 0x04,  // board: u64 t_host_ns as received, u64 t_board_us on receipt, u64 t_board_us on sending
+  SYNC_FAULT = 0x7f  // board: u8 sync_fault, u8 offending message type
 };
 
 enum sync_fault { SYNC_FAULT_UNKNOWN_TYPE = 1, SYNC_FAULT_PAYLOAD_SIZE = 2, SYNC_FAULT_VERSION = 3 };

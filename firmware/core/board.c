@@ -33,7 +33,8 @@ static size_t hello(board* self, uint8_t* wire) {
   return send(self, SYNC_HELLO, payload, sizeof payload, wire);
 }
 
-static size_t pong(board* self, const frame_view* ping, uint64_t received_us, uint32_t counter_us, uint8_t* wire) {
+static size_t pong(board* self, const frame_view* ping, uint64_t received_us, uint32_t counter_us,
+                   uint8_t* wire) {
   uint8_t payload[SYNC_PONG_PAYLOAD];
   for (size_t i = 0; i < SYNC_PING_PAYLOAD; ++i) payload[i] = ping->payload[i];
   put_u64(payload + 8, received_us);
@@ -48,7 +49,8 @@ size_t board_receive(board* self, uint8_t byte, uint32_t counter_us, uint8_t* wi
   if (frame.version != SYNC_PROTOCOL_VERSION) return fault(self, SYNC_FAULT_VERSION, frame.type, wire);
   switch (frame.type) {
     case SYNC_HELLO_REQUEST:
-      return frame.payload_size == 0u ? hello(self, wire) : fault(self, SYNC_FAULT_PAYLOAD_SIZE, frame.type, wire);
+      return frame.payload_size == 0u ? hello(self, wire)
+                                      : fault(self, SYNC_FAULT_PAYLOAD_SIZE, frame.type, wire);
     case SYNC_PING:
       return frame.payload_size == SYNC_PING_PAYLOAD ? pong(self, &frame, now_us, counter_us, wire)
                                                      : fault(self, SYNC_FAULT_PAYLOAD_SIZE, frame.type, wire);

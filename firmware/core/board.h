@@ -22,8 +22,8 @@ typedef struct {
 
 void board_init(board* self, uint32_t counter_us);
 
-// Takes one byte from the host. Where it ends a request, the answer is written to wire (SYNC_MAX_WIRE bytes) and its
-// size returned; else 0. counter_us: now.
+// Takes one byte from the host. Where it ends a request, the answer is written to wire (SYNC_MAX_WIRE bytes)
+// and its size returned; else 0. counter_us: now.
 size_t board_receive(board* self, uint8_t byte, uint32_t counter_us, uint8_t* wire);
 
 #ifdef __cplusplus

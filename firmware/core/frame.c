@@ -12,7 +12,8 @@ uint16_t frame_crc16(const uint8_t* bytes, size_t size) {
   return crc;
 }
 
-// Consistent Overhead Byte Stuffing (Cheshire and Baker 1999): every zero becomes the distance to the next one.
+// Consistent Overhead Byte Stuffing (Cheshire and Baker 1999): every zero becomes the distance to the next
+// one.
 static size_t cobs_encode(const uint8_t* in, size_t size, uint8_t* out) {
   size_t code_at = 0;
   size_t end = 1;
@@ -45,7 +46,8 @@ static size_t cobs_decode(uint8_t* bytes, size_t size) {
   return out;
 }
 
-size_t frame_encode(uint8_t type, uint16_t sequence, const uint8_t* payload, size_t payload_size, uint8_t* wire) {
+size_t frame_encode(uint8_t type, uint16_t sequence, const uint8_t* payload, size_t payload_size,
+                    uint8_t* wire) {
   if (payload_size > SYNC_MAX_PAYLOAD) return 0;
   uint8_t frame[SYNC_MAX_FRAME];
   frame[0] = SYNC_PROTOCOL_VERSION;

@@ -19,7 +19,8 @@ uint16_t frame_crc16(const uint8_t* bytes, size_t size);
 
 // Whole frame for the wire, the ending zero included; returns its size, 0 if the payload is too large.
 // wire: SYNC_MAX_WIRE bytes.
-size_t frame_encode(uint8_t type, uint16_t sequence, const uint8_t* payload, size_t payload_size, uint8_t* wire);
+size_t frame_encode(uint8_t type, uint16_t sequence, const uint8_t* payload, size_t payload_size,
+                    uint8_t* wire);
 
 // A frame as received; payload points into the receiver and is valid until its next byte.
 typedef struct {

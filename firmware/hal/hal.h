@@ -8,6 +8,6 @@
 #include <stdint.h>
 
 void hal_init(void);
-uint32_t hal_counter_us(void);        // free-running, wraps at 2^32
-bool hal_link_read(uint8_t* byte);    // false: nothing has arrived
-void hal_link_write(uint8_t byte);    // waits for room
+uint32_t hal_counter_us(void);      // free-running, wraps at 2^32
+bool hal_link_read(uint8_t* byte);  // false: nothing has arrived
+void hal_link_write(uint8_t byte);  // waits for room

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-// Arm MPS2 with the AN386 image (Cortex-M4), as QEMU models it: CMSDK UART 0 is the link, dual timer 1 the clock.
-// Addresses: Arm DAI 0386, "Application Note AN386", memory map.
+// Arm MPS2 with the AN386 image (Cortex-M4), as QEMU models it: CMSDK UART 0 is the link, dual timer 1 the
+// clock. Addresses: Arm DAI 0386, "Application Note AN386", memory map.
 
 #include "firmware/hal/hal.h"
 

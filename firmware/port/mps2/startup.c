@@ -4,7 +4,8 @@
 
 #include <stdint.h>
 
-extern uint32_t image_data_start, image_data_end, image_data_load, image_bss_start, image_bss_end, image_stack_top;
+extern uint32_t image_data_start, image_data_end, image_data_load, image_bss_start, image_bss_end,
+    image_stack_top;
 
 int main(void);
 void uart0_receive_interrupt(void);
@@ -26,6 +27,21 @@ void reset_handler(void) {
 typedef void (*vector)(void);
 
 __attribute__((section(".vectors"), used)) static const vector vectors[16 + 1] = {
-    (vector)&image_stack_top, reset_handler, hang, hang, hang, hang, hang, 0, 0, 0, 0, hang, hang, 0, hang, hang,
+    (vector)&image_stack_top,
+    reset_handler,
+    hang,
+    hang,
+    hang,
+    hang,
+    hang,
+    0,
+    0,
+    0,
+    0,
+    hang,
+    hang,
+    0,
+    hang,
+    hang,
     uart0_receive_interrupt,
 };
