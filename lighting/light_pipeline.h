@@ -16,23 +16,25 @@ namespace lightwell {
 enum class TemporalFilter { none, fir };
 
 struct LightPipelineOptions {
-  int count = 300;             // lights sampled a frame, 1 to 100,000
+  int count = 300;  // lights sampled a frame, 1 to 100,000
   enum class Sampler { standard, havran } sampler = Sampler::havran;
-  bool relaxed = true;         // Lloyd relaxation of the Halton points, once (section 3.2)
-  std::uint32_t seed = 0;      // Cranley–Patterson rotation of the sequence; 0: none
+  bool relaxed = true;     // Lloyd relaxation of the Halton points, once (section 3.2)
+  std::uint32_t seed = 0;  // Cranley–Patterson rotation of the sequence; 0: none
   TemporalFilter filter = TemporalFilter::fir;
-  double rate_hz = 60;         // the camera's
-  double pass_hz = 20;         // the paper's 7/21 of the rate
-  double stop_hz = 25.714;     // the paper's 9/21
-  int filter_order = 8;        // taps − 1; the delay is half of it, in frames
-  int clusters = 72;           // Q, bound on the lights after clustering; 0: no clustering
+  double rate_hz = 60;      // the camera's
+  double pass_hz = 20;      // the paper's 7/21 of the rate
+  double stop_hz = 25.714;  // the paper's 9/21
+  int filter_order = 8;     // taps − 1; the delay is half of it, in frames
+  int clusters = 72;        // Q, bound on the lights after clustering; 0: no clustering
 };
 
 // Map to published lights: sample → temporal filter → cluster (Havran et al. 2005, sections 3 and 4.3).
-// Keeps the state between frames. process allocates nothing and never fails: a black map gives lights of no power.
+// Keeps the state between frames. process allocates nothing and never fails: a black map gives lights of no
+// power.
 class LightPipeline {
  public:
-  static Result<LightPipeline> create(const PolarGrid& grid, int channels, const LightPipelineOptions& options);
+  static Result<LightPipeline> create(const PolarGrid& grid, int channels,
+                                      const LightPipelineOptions& options);
   LightPipeline(LightPipeline&&) noexcept;
   LightPipeline& operator=(LightPipeline&&) noexcept;
   ~LightPipeline();

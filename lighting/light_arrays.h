@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace lightwell {
+
+// Directional lights as a structure of arrays, for the loops over all of them. Light i is the same light in
+// every frame. Directions are unit, illuminance in lux (lighting/light_set.h).
+struct LightArrays {
+  std::vector<float> x, y, z;
+  std::vector<float> r, g, b;
+
+  LightArrays() = default;
+  explicit LightArrays(std::size_t count)
+      : x(count, 0), y(count, 1), z(count, 0), r(count, 0), g(count, 0), b(count, 0) {}
+  [[nodiscard]] std::size_t size() const { return x.size(); }
+};
+
+}  // namespace lightwell
