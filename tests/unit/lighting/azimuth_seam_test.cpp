@@ -98,7 +98,6 @@ TEST(AzimuthSeam, SunCrossingAzimuthZeroMovesNoLightFarWhereThePrintedMethodJump
       largest = std::max(largest, ours.step(map));
       largest_printed = std::max(largest_printed, printed.step(map));
     }
-    std::printf("share %.2f: ours %.2f printed %.2f\n", share, largest, largest_printed);
     EXPECT_LT(largest, 8) << share;
     EXPECT_GT(largest_printed, 60) << share;
   }
@@ -110,7 +109,6 @@ TEST(AzimuthSeam, SunAllTheWayRoundMovesNoLightFar) {
     double largest = 0;
     for (double azimuth = 0; azimuth <= 400; azimuth += 0.5)
       largest = std::max(largest, ours.step(test::sun_and_sky(kGrid, azimuth, 50, share)));
-    std::printf("share %.2f: round %.2f\n", share, largest);
     EXPECT_LT(largest, 8) << share;
   }
 }

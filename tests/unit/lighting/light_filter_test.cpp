@@ -74,7 +74,9 @@ TEST(LightFilter, AlternationAtHalfTheRateIsSuppressedAsDesigned) {
   LightArrays out(3);
   for (int frame = 0; frame < 60; ++frame) {
     filter.apply(lights_of_power(3, frame % 2 == 0 ? 12.0f : 8.0f), out);
-    if (frame > 20) EXPECT_NEAR(sum(out.r), 3 * 10.0, 3 * 2 * gain + 1e-3);
+    if (frame > 20) {
+      EXPECT_NEAR(sum(out.r), 3 * 10.0, 3 * 2 * gain + 1e-3);
+    }
   }
 }
 
@@ -87,7 +89,9 @@ TEST(LightFilter, SpikeIsBoundedNeverNegativeAndForgotten) {
       EXPECT_GE(out.r[i], 1 - 1e-5f) << frame;  // never below what was there
       EXPECT_LE(out.r[i], 100 + 1e-3f) << frame;
     }
-    if (frame < 10 || frame > 18) EXPECT_NEAR(sum(out.r), 5, 1e-4) << frame;
+    if (frame < 10 || frame > 18) {
+      EXPECT_NEAR(sum(out.r), 5, 1e-4) << frame;
+    }
   }
 }
 
@@ -188,8 +192,12 @@ TEST(LightFilter, BlackFramesStayBlackAndBrightnessReturns) {
   for (int frame = 0; frame < 40; ++frame) {
     const bool black = frame < 20;
     filter.apply(lights_of_power(3, black ? 0.0f : 4.0f), out);
-    if (black) EXPECT_EQ(sum(out.r), 0);
-    if (frame >= 29) EXPECT_NEAR(sum(out.r), 12, 1e-4);
+    if (black) {
+      EXPECT_EQ(sum(out.r), 0);
+    }
+    if (frame >= 29) {
+      EXPECT_NEAR(sum(out.r), 12, 1e-4);
+    }
     for (const float v : out.r) EXPECT_TRUE(std::isfinite(v) && v >= 0);
   }
 }

@@ -53,7 +53,9 @@ TEST(LightPipeline, TotalPowerIsExactAfterEveryStage) {
           EXPECT_LT(relative(sum(lights), total), 3e-6) << name;
           EXPECT_LT(relative(sum(pipeline.unclustered()), total), 3e-6) << name;
           EXPECT_LT(relative(pipeline.total_illuminance().cast<double>(), sum(lights)), 1e-6) << name;
-          if (clusters > 0) EXPECT_LE(lights.size(), static_cast<std::size_t>(clusters));
+          if (clusters > 0) {
+            EXPECT_LE(lights.size(), static_cast<std::size_t>(clusters));
+          }
         }
       }
 }
