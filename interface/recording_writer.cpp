@@ -11,6 +11,7 @@ extern "C" {
 #include <chrono>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "interface/recording_av.h"
@@ -92,7 +93,7 @@ Status MatroskaWriter::begin() {
   if (status) status = open_container();
   if (status) {
     sync_ = std::make_unique<DiskSync>(file_->fd());
-    samples_.resize(picture_bytes(header_.format));
+    if (encoder_) samples_.resize(picture_bytes(header_.format));
     return {};
   }
   container_.reset();
@@ -166,6 +167,7 @@ Status MatroskaWriter::open_container() {
   made->pb = file_->io();
   made->flags |= AVFMT_FLAG_CUSTOM_IO | AVFMT_FLAG_BITEXACT;  // bit-exact: equal frames make equal files
   made->flush_packets = 0;
+  av_opt_set_int(made->priv_data, "write_crc32", 0, 0);  // every frame carries its own
   av_opt_set_int(made->priv_data, "cluster_time_limit", kNeverMs, 0);
   av_opt_set_int(made->priv_data, "cluster_size_limit", std::numeric_limits<int>::max(), 0);
 
@@ -203,12 +205,14 @@ Status MatroskaWriter::open_container() {
 
 // codes → packet_. verbatim: the picture does not hold all of them.
 Status MatroskaWriter::encode(std::span<const std::byte> codes, bool& verbatim) {
-  verbatim = !picture_from_codes(header_.format, codes, samples_);
   if (!encoder_) {
-    if (av_new_packet(packet_.get(), static_cast<int>(samples_.size())) < 0) return failure("out of memory");
-    std::memcpy(packet_->data, samples_.data(), samples_.size());
+    const std::size_t size = picture_bytes(header_.format);
+    if (av_new_packet(packet_.get(), static_cast<int>(size)) < 0) return failure("out of memory");
+    const auto picture = std::as_writable_bytes(std::span(packet_->data, size));
+    verbatim = !picture_from_codes(header_.format, codes, picture);
     return {};
   }
+  verbatim = !picture_from_codes(header_.format, codes, samples_);
   if (std::min(header_.format.width, header_.format.height) < kMinFfv1Side) verbatim = true;
   if (av_frame_make_writable(picture_.get()) < 0) return failure("out of memory");
   const std::size_t row = samples_.size() / static_cast<std::size_t>(header_.format.height);
