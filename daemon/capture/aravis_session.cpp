@@ -19,6 +19,7 @@
 #include <cstring>
 #include <limits>
 #include <mutex>
+#include <vector>
 
 #include "daemon/capture/buffer_pool.h"
 
@@ -136,8 +137,11 @@ struct AravisSession::Handles {
   ArvPixelFormat pixel_format = 0;
   std::unique_ptr<BufferPool> pool;
   std::atomic<int> live_buffers{0};  // ArvBuffers that exist
-  std::mutex mutex;                  // guards closed, and pushing into the stream against its end
+  std::mutex mutex;                  // guards what follows, and pushing into the stream against its end
   bool closed = false;
+  // Aravis's queues allocate now and then, and the end of a lease must not: buffers wait here for the
+  // stream's thread.
+  std::vector<ArvBuffer*> returned;  // never more than the pool has
 
   // On the stream's thread. The buffer was queued just before; taking it here keeps the queue empty, so that
   // a consumer that does not come for a while still finds the freshest frame and the camera never runs out of
@@ -149,6 +153,7 @@ struct AravisSession::Handles {
     const std::int64_t now_ns = mono_now_ns();
     while (ArvBuffer* buffer = arv_stream_try_pop_buffer(stream))
       self->session->listener_.frame_done(*self->session, self->describe(buffer, now_ns));
+    self->session->recycle();
   }
   static void on_control_lost(ArvDevice*, gpointer context) noexcept {
     auto* self = static_cast<Handles*>(context);
@@ -343,6 +348,7 @@ Status AravisSession::start() {
     return Error{ErrorKind::failed, "no memory for " + std::to_string(options_.buffers) + " frames of " +
                                         std::to_string(payload) + " bytes"};
   }
+  h.returned.reserve(h.pool->count());
   for (std::size_t i = 0; i < h.pool->count(); ++i) {
     h.live_buffers.fetch_add(1);
     arv_stream_push_buffer(
@@ -359,7 +365,16 @@ void AravisSession::give_back(void* buffer) noexcept {
   if (h.closed)
     g_object_unref(buffer);
   else
-    arv_stream_push_buffer(h.stream.load(std::memory_order_relaxed), static_cast<ArvBuffer*>(buffer));
+    h.returned.push_back(static_cast<ArvBuffer*>(buffer));
+}
+
+void AravisSession::recycle() noexcept {
+  Handles& h = *handles_;
+  const std::lock_guard lock(h.mutex);
+  if (h.closed) return;
+  for (ArvBuffer* buffer : h.returned)
+    arv_stream_push_buffer(h.stream.load(std::memory_order_relaxed), buffer);
+  h.returned.clear();
 }
 
 void AravisSession::close(bool stop_camera) noexcept {
@@ -367,6 +382,8 @@ void AravisSession::close(bool stop_camera) noexcept {
   {
     const std::lock_guard lock(h.mutex);
     h.closed = true;
+    for (ArvBuffer* buffer : h.returned) g_object_unref(buffer);
+    h.returned.clear();
   }
   if (h.camera != nullptr && stop_camera) arv_camera_stop_acquisition(h.camera, nullptr);
   if (h.camera != nullptr && h.control_lost_handler != 0)

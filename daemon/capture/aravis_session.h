@@ -65,7 +65,10 @@ class AravisSession {
   bool refresh();
   [[nodiscard]] const CameraSettings& settings() const { return settings_; }
 
+  // The stream takes the buffer up again with its next frame, or with recycle.
   void give_back(void* buffer) noexcept;
+  // Hands returned buffers to the stream; for the control thread, where no frame has come to do it.
+  void recycle() noexcept;
   // Ends the connection; buffers that are out may still come back. stop_camera: tell it to stop, where it is
   // alive.
   void close(bool stop_camera) noexcept;

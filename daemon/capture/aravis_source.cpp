@@ -282,6 +282,7 @@ AravisSource::Outcome AravisSource::watch() {
         settings_ = session_->settings();
       }
     }
+    session_->recycle();
     forget_returned(false);
     lock.lock();
   }
