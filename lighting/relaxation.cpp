@@ -16,10 +16,16 @@ double wrapped(double x) {
   return x < 1 ? x : 0;  // a tiny negative number rounds up to 1
 }
 
-// Signed difference on a circle of length 1, in [−½, ½].
+// Signed difference of two places on a circle of length 1, in [−½, ½].
 double torus_difference(double to, double from) {
   const double d = to - from;
-  return d - std::round(d);
+  return d > 0.5 ? d - 1 : d < -0.5 ? d + 1 : d;
+}
+
+double torus_distance2(const Vec2d& a, const Vec2d& b) {
+  const double dx = torus_difference(a.x(), b.x());
+  const double dy = torus_difference(a.y(), b.y());
+  return dx * dx + dy * dy;
 }
 
 // The points sorted into side² square cells of the torus, about two points a cell.
@@ -37,22 +43,18 @@ class Buckets {
       member_[next[cell(points[i])]++] = static_cast<std::uint32_t>(i);
   }
 
-  // Nearest point on the torus; of equally near ones the one with the lowest index.
-  [[nodiscard]] std::size_t nearest(std::span<const Vec2d> points, const Vec2d& site) const {
-    std::size_t best = 0;
-    double best_d2 = 2;
-    const auto row = static_cast<std::ptrdiff_t>(index(site.y()));
-    const auto column = static_cast<std::ptrdiff_t>(index(site.x()));
-    const auto side = static_cast<std::ptrdiff_t>(side_);
-    for (std::ptrdiff_t ring = 0; ring <= side / 2 + 1; ++ring) {
-      // Nothing in this ring of cells can be nearer than ring − 1 whole cells.
-      const double reach = static_cast<double>(ring - 1) / static_cast<double>(side_);
-      if (ring > 1 && best_d2 < reach * reach) break;
-      for (std::ptrdiff_t dy = -ring; dy <= ring; ++dy)
-        for (std::ptrdiff_t dx = -ring; dx <= ring;
-             dx += std::abs(dy) == ring ? 1 : std::max<std::ptrdiff_t>(1, 2 * ring))
-          visit(points, site, wrap(row + dy), wrap(column + dx), best, best_d2);
-    }
+  // Nearest point on the torus; of equally near ones the one with the lowest index. guess: any point, better
+  // a near one: only the cells that a circle through it touches are searched.
+  [[nodiscard]] std::size_t nearest(std::span<const Vec2d> points, const Vec2d& site,
+                                    std::size_t guess) const {
+    std::size_t best = guess;
+    double best_d2 = torus_distance2(points[guess], site);
+    const double radius = std::sqrt(best_d2);
+    const Span rows = cells_within(site.y(), radius);
+    const Span columns = cells_within(site.x(), radius);
+    for (std::ptrdiff_t row = rows.first; row <= rows.last; ++row)
+      for (std::ptrdiff_t column = columns.first; column <= columns.last; ++column)
+        visit(points, site, wrap(row) * side_ + wrap(column), best, best_d2);
     return best;
   }
 
@@ -61,18 +63,26 @@ class Buckets {
     return std::min(side_ - 1, static_cast<std::size_t>(x * static_cast<double>(side_)));
   }
   [[nodiscard]] std::size_t cell(const Vec2d& p) const { return index(p.y()) * side_ + index(p.x()); }
+  // i: at most one turn below or above the torus
   [[nodiscard]] std::size_t wrap(std::ptrdiff_t i) const {
     const auto side = static_cast<std::ptrdiff_t>(side_);
-    return static_cast<std::size_t>(((i % side) + side) % side);
+    return static_cast<std::size_t>(i < 0 ? i + side : i >= side ? i - side : i);
   }
-  void visit(std::span<const Vec2d> points, const Vec2d& site, std::size_t row, std::size_t column,
-             std::size_t& best, double& best_d2) const {
-    const std::size_t c = row * side_ + column;
-    for (std::size_t m = first_[c]; m < first_[c + 1]; ++m) {
+  struct Span {
+    std::ptrdiff_t first, last;
+  };
+  // Cells along one axis that [x − radius, x + radius] touches, unwrapped, each at most once.
+  [[nodiscard]] Span cells_within(double x, double radius) const {
+    const auto side = static_cast<double>(side_);
+    const auto first = static_cast<std::ptrdiff_t>(std::floor((x - radius) * side));
+    const auto last = static_cast<std::ptrdiff_t>(std::floor((x + radius) * side));
+    return {first, std::min(last, first + static_cast<std::ptrdiff_t>(side_) - 1)};
+  }
+  void visit(std::span<const Vec2d> points, const Vec2d& site, std::size_t cell, std::size_t& best,
+             double& best_d2) const {
+    for (std::size_t m = first_[cell]; m < first_[cell + 1]; ++m) {
       const std::size_t i = member_[m];
-      const double dx = torus_difference(points[i].x(), site.x());
-      const double dy = torus_difference(points[i].y(), site.y());
-      const double d2 = dx * dx + dy * dy;
+      const double d2 = torus_distance2(points[i], site);
       if (d2 < best_d2 || (d2 == best_d2 && i < best)) {
         best_d2 = d2;
         best = i;
@@ -90,19 +100,20 @@ void relax_once(std::span<Vec2d> points, std::size_t sites_per_side) {
   std::vector<Vec2d> offset_sum(points.size(), Vec2d(0, 0));
   std::vector<double> sites(points.size(), 0);
   const double step = 1.0 / static_cast<double>(sites_per_side);
+  std::size_t i = 0;  // the last site's nearest point is a good guess for this one's
   for (std::size_t row = 0; row < sites_per_side; ++row) {
     for (std::size_t column = 0; column < sites_per_side; ++column) {
       const Vec2d site((static_cast<double>(column) + 0.5) * step, (static_cast<double>(row) + 0.5) * step);
-      const std::size_t i = buckets.nearest(points, site);
+      i = buckets.nearest(points, site, i);
       offset_sum[i] +=
           Vec2d(torus_difference(site.x(), points[i].x()), torus_difference(site.y(), points[i].y()));
       sites[i] += 1;
     }
   }
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (sites[i] == 0) continue;  // a cell finer than the grid: the point is crowded out for this pass
-    const Vec2d moved = points[i] + offset_sum[i] / sites[i];
-    points[i] = {wrapped(moved.x()), wrapped(moved.y())};
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    if (sites[p] == 0) continue;  // a cell finer than the grid: the point is crowded out for this pass
+    const Vec2d moved = points[p] + offset_sum[p] / sites[p];
+    points[p] = {wrapped(moved.x()), wrapped(moved.y())};
   }
 }
 
@@ -110,11 +121,10 @@ void relax_once(std::span<Vec2d> points, std::size_t sites_per_side) {
 
 void relax_on_torus(std::span<Vec2d> points, int passes) {
   if (points.size() < 2) return;  // one cell, the whole torus: its centroid is anywhere
-  constexpr double kSitesPerPoint = 16;
-  constexpr std::size_t kLeastSitesPerSide = 256;
-  const auto side =
-      static_cast<std::size_t>(std::ceil(std::sqrt(kSitesPerPoint * static_cast<double>(points.size()))));
-  for (int pass = 0; pass < passes; ++pass) relax_once(points, std::max(side, kLeastSitesPerSide));
+  const std::size_t sites =
+      std::max({16 * points.size(), std::min<std::size_t>(64 * points.size(), 65536), std::size_t{4096}});
+  const auto side = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(sites))));
+  for (int pass = 0; pass < passes; ++pass) relax_once(points, side);
 }
 
 }  // namespace lightwell
