@@ -6,6 +6,8 @@
 
 namespace lightwell::cli {
 
+Command add_filter(CLI::App& app);
+
 int fail(const Error& error) {
   std::fprintf(stderr, "lightwell: %s\n", error.message.c_str());
   return static_cast<int>(error.kind);
@@ -15,7 +17,7 @@ Error usage(std::string message) { return {ErrorKind::usage, std::move(message)}
 
 std::vector<Command> add_commands(CLI::App& app) {
   std::vector<Command> commands;
-  static_cast<void>(app);
+  commands.push_back(add_filter(app));
   return commands;
 }
 
