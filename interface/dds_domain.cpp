@@ -13,8 +13,9 @@
 namespace lightwell {
 namespace {
 
-// The RTPS port of a domain is 7400 + 250 × domain + up to 14 (DDSI-RTPS 2.3, 9.6.1.1), and must fit 16 bits.
-constexpr int kMaxDomain = 230;
+// The RTPS port of a domain is 7400 + 250 × domain + 1 (DDSI-RTPS 2.3, 9.6.1.1; participants have no
+// number), and must fit 16 bits.
+constexpr int kMaxDomain = 232;
 
 // Cyclone DDS has one domain object an id and process; so do we.
 struct Registry {

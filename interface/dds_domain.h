@@ -11,7 +11,7 @@
 namespace lightwell {
 
 struct DdsOptions {
-  int domain = 0;                // 0 to 230; programs see each other only inside one domain
+  int domain = 0;                // 0 to 232; programs see each other only inside one domain
   std::string interface = "lo";  // network interface, by name or address; "lo" reaches this machine only
 };
 

@@ -37,7 +37,7 @@ struct Wire<ProbeStatus> {
   static constexpr bool kReliable = true;
 };
 
-inline constexpr std::size_t kMaxWireLights = 16384;
+inline constexpr std::size_t kMaxWireLights = 131072;
 inline constexpr std::size_t kMaxWireHalves = 12582912;
 inline constexpr std::uint32_t kMaxRings = 4096;
 inline constexpr std::uint32_t kMaxSectors = 8192;

@@ -178,9 +178,9 @@ Result<EnvironmentImage> read_environment(const std::filesystem::path& file) {
   return environment_from_bytes(*bytes, file.string());
 }
 
-Status write_environment(const std::filesystem::path& file, const LatLongImage& image) {
-  const auto fail = [&](const std::string& why) {
-    return Error{ErrorKind::failed, file.string() + ": cannot write: " + first_line(why)};
+Result<std::string> environment_to_exr(const LatLongImage& image) {
+  const auto fail = [](const std::string& why) {
+    return Error{ErrorKind::failed, "cannot write: " + first_line(why)};
   };
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
@@ -193,7 +193,13 @@ Status write_environment(const std::filesystem::path& file, const LatLongImage& 
   if (!output->set_ioproxy(&memory) || !output->open("memory.exr", spec) ||
       !output->write_image(OIIO::TypeDesc::FLOAT, image.pixels.data()) || !output->close())
     return fail(output->geterror());
-  return write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  return std::string(bytes.begin(), bytes.end());
+}
+
+Status write_environment(const std::filesystem::path& file, const LatLongImage& image) {
+  const auto bytes = environment_to_exr(image);
+  if (!bytes) return Error{bytes.error().kind, file.string() + ": " + bytes.error().message};
+  return write_file_atomically(file, *bytes);
 }
 
 }  // namespace lightwell

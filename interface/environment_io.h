@@ -28,6 +28,9 @@ Result<EnvironmentImage> read_environment(const std::filesystem::path& file);
 // The same from a file's bytes; name_for_errors is the file.
 Result<EnvironmentImage> environment_from_bytes(std::string_view bytes, const std::string& name_for_errors);
 
+// The bytes of an EXR file, as write_environment writes it.
+Result<std::string> environment_to_exr(const LatLongImage& image);
+
 // EXR, 32 bit float, `envmap` attribute latitude–longitude; written whole or not at all.
 Status write_environment(const std::filesystem::path& file, const LatLongImage& image);
 

@@ -5,6 +5,7 @@
 #include <event2/buffer.h>
 #include <event2/event.h>
 #include <event2/http.h>
+#include <signal.h>
 #include <sys/time.h>
 
 #include <array>
@@ -36,6 +37,26 @@ std::optional<evhttp_cmd_type> command_of(const std::string& method) {
     if (method == name) return command;
   return std::nullopt;
 }
+
+// A server that closes while it is written to is an error to report, not a signal to die of.
+class NoSigpipe {
+ public:
+  NoSigpipe() {
+    sigemptyset(&pipe_);
+    sigaddset(&pipe_, SIGPIPE);
+    ::pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
+  }
+  ~NoSigpipe() {
+    const timespec now{};
+    if (sigismember(&before_, SIGPIPE) == 0) ::sigtimedwait(&pipe_, nullptr, &now);
+    ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  NoSigpipe(const NoSigpipe&) = delete;
+  NoSigpipe& operator=(const NoSigpipe&) = delete;
+
+ private:
+  sigset_t pipe_{}, before_{};
+};
 
 // What the callbacks leave behind. status 0: no answer, with the reason.
 struct Exchange {
@@ -90,6 +111,7 @@ Result<HttpResponse> http_request(const std::string& address, const HttpRequest&
   const auto command = command_of(request.method);
   if (!command) return Error{ErrorKind::usage, "HTTP method '" + request.method + "' is not known"};
 
+  const NoSigpipe no_sigpipe;
   const std::unique_ptr<event_base, BaseFree> base(event_base_new());
   if (!base) return Error{ErrorKind::failed, "cannot make an event loop"};
   Exchange exchange;

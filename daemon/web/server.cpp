@@ -1,0 +1,447 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/web/server.h"
+
+#include <arpa/inet.h>
+#include <event2/buffer.h>
+#include <event2/event.h>
+#include <event2/http.h>
+#include <signal.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+
+#include "daemon/web/json.h"
+#include "daemon/web/listen_address.h"
+#include "daemon/web/metrics.h"
+#include "daemon/web/page_files.h"
+#include "daemon/web/pictures.h"
+#include "daemon/web/stream.h"
+#include "interface/environment_io.h"
+#include "interface/host_port.h"
+#include "interface/jpeg.h"
+
+namespace lightwell {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr ev_ssize_t kMaxBody = 64 << 10;  // the largest request is a file name
+constexpr ev_ssize_t kMaxHeaders = 16 << 10;
+constexpr int kIdleTimeout_s = 30;
+constexpr int kPictureSize = 560;       // pixels; sharp on a phone, a few milliseconds to make
+constexpr std::size_t kMaxQueued = 64;  // events between the two threads
+constexpr auto kStopCheck = 100ms;      // how long the watcher may wait before it looks whether to stop
+constexpr timeval kHeartbeat{1, 0};
+
+constexpr const char* kNoFrame = "no frame has been published yet";
+
+struct Answer {
+  int status = 200;
+  const char* type = "application/json";
+  std::string body;
+};
+
+Answer error_answer(int status, const std::string& message) {
+  return {status, "application/json", error_json(message)};
+}
+
+// A file name and nothing else: no folders, nothing hidden, nothing that a shell or a terminal would take for
+// more.
+std::string check_take_name(const std::string& file) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' ||
+           c == '_' || c == '-' || c == ' ';
+  };
+  const bool good = file.size() >= 5 && file.size() <= 128 && file.ends_with(".mkv") && file.front() != '.' &&
+                    file.front() != '-' && std::all_of(file.begin(), file.end(), plain);
+  if (good) return {};
+  return "file: expected a plain name that ends in .mkv: letters, digits, '.', '_', '-' and spaces, 128 at "
+         "most";
+}
+
+const char* reason(int status) {
+  switch (status) {
+    case 200:
+      return "OK";
+    case 400:
+      return "Bad Request";
+    case 403:
+      return "Forbidden";
+    case 404:
+      return "Not Found";
+    case 405:
+      return "Method Not Allowed";
+    case 409:
+      return "Conflict";
+    case 503:
+      return "Service Unavailable";
+    default:
+      return "Internal Server Error";
+  }
+}
+
+const char* type_of(std::string_view name) {
+  if (name.ends_with(".html")) return "text/html; charset=utf-8";
+  if (name.ends_with(".css")) return "text/css; charset=utf-8";
+  if (name.ends_with(".js")) return "text/javascript; charset=utf-8";
+  if (name.ends_with(".svg")) return "image/svg+xml";
+  return "application/yaml";
+}
+
+std::string header(evhttp_request* request, const char* name) {
+  const char* value = evhttp_find_header(evhttp_request_get_input_headers(request), name);
+  return value == nullptr ? std::string() : value;
+}
+
+std::string body_of(evhttp_request* request) {
+  evbuffer* input = evhttp_request_get_input_buffer(request);
+  std::string body(evbuffer_get_length(input), '\0');
+  evbuffer_copyout(input, body.data(), body.size());
+  return body;
+}
+
+// Everything here is this machine's, now: nothing is cached, framed or mixed with foreign scripts.
+void add_common_headers(evhttp_request* request) {
+  evkeyvalq* headers = evhttp_request_get_output_headers(request);
+  evhttp_add_header(headers, "Cache-Control", "no-store");
+  evhttp_add_header(headers, "X-Content-Type-Options", "nosniff");
+  evhttp_add_header(headers, "Cross-Origin-Resource-Policy", "same-origin");
+  evhttp_add_header(headers, "Content-Security-Policy",
+                    "default-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'");
+}
+
+void send(evhttp_request* request, const Answer& answer) {
+  add_common_headers(request);
+  evkeyvalq* headers = evhttp_request_get_output_headers(request);
+  evhttp_add_header(headers, "Content-Type", answer.type);
+  evbuffer* buffer = evbuffer_new();
+  evbuffer_add(buffer, answer.body.data(), answer.body.size());
+  evhttp_send_reply(request, answer.status, reason(answer.status), buffer);
+  evbuffer_free(buffer);
+}
+
+}  // namespace
+
+struct WebServer::Impl {
+  Impl(WebServerOptions o, SnapshotChannel& s, DaemonControl& c)
+      : options(std::move(o)), snapshots(s), control(c) {}
+  ~Impl();
+  Status listen(const HostPort& address);
+  Status run();
+
+  // The watcher's thread: turns snapshots into events and wakes the server's.
+  void watch();
+  // The server's thread.
+  void serve();
+  void on_wake();
+  void handle(evhttp_request* request);
+  std::optional<Answer> refuse(evhttp_request* request);
+  void open_stream(evhttp_request* request);
+  std::function<Answer()> find(const std::string& path);
+  Answer status();
+  Answer lights();
+  Answer metrics();
+  Answer environment_exr();
+  Answer environment_jpg();
+  Answer record(const std::string& body);
+
+  WebServerOptions options;
+  SnapshotChannel& snapshots;
+  DaemonControl& control;
+
+  event_base* base = nullptr;
+  evhttp* http = nullptr;
+  event* wake = nullptr;
+  event* heartbeat = nullptr;
+  int wake_fd = -1;
+  int port = 0;
+  std::string host;
+
+  StreamClients streams;
+  WebCounters counters;
+  // The last one made of each kind: many viewers cost one.
+  struct Picture {
+    std::uint64_t number = 0;
+    std::int64_t capture_ns = 0;
+    std::string body;
+  };
+  Answer picture(Picture& last, const char* type, Result<std::string> (*make)(const Snapshot&));
+  Picture exr_picture, jpg_picture;
+
+  std::mutex mutex;
+  std::deque<StreamEvent> queue;          // guarded by mutex
+  std::atomic<std::size_t> listeners{0};  // events are made only while somebody listens
+  std::atomic<bool> stopping{false};
+  std::thread server_thread, watcher_thread;
+};
+
+WebServer::WebServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+WebServer::~WebServer() = default;
+int WebServer::port() const {
+  return impl_->port;
+}
+std::string WebServer::url() const {
+  const bool v6 = impl_->host.find(':') != std::string::npos;
+  return "http://" + (v6 ? "[" + impl_->host + "]" : impl_->host) + ":" + std::to_string(impl_->port) + "/";
+}
+
+Result<std::unique_ptr<WebServer>> WebServer::start(const WebServerOptions& options,
+                                                    SnapshotChannel& snapshots, DaemonControl& control) {
+  if (const Status checked = check_listen_address(options.listen); !checked) return checked.error();
+  auto impl = std::make_unique<Impl>(options, snapshots, control);
+  if (const Status listening = impl->listen(*parse_host_port(options.listen)); !listening)
+    return listening.error();
+  if (const Status running = impl->run(); !running) return running.error();
+  return std::unique_ptr<WebServer>(new WebServer(std::move(impl)));
+}
+
+WebServer::Impl::~Impl() {
+  stopping = true;
+  if (watcher_thread.joinable()) watcher_thread.join();
+  if (server_thread.joinable()) {
+    const std::uint64_t one = 1;
+    verify_bug(::write(wake_fd, &one, sizeof one) == sizeof one, "an eventfd takes a count");
+    server_thread.join();
+  }
+  if (http != nullptr) evhttp_free(http);
+  if (heartbeat != nullptr) event_free(heartbeat);
+  if (wake != nullptr) event_free(wake);
+  if (base != nullptr) event_base_free(base);
+  if (wake_fd >= 0) ::close(wake_fd);
+}
+
+Status WebServer::Impl::listen(const HostPort& address) {
+  base = event_base_new();
+  http = evhttp_new(base);
+  // libevent answers 413 and 400 beyond these.
+  evhttp_set_max_body_size(http, kMaxBody);
+  evhttp_set_max_headers_size(http, kMaxHeaders);
+  evhttp_set_timeout(http, kIdleTimeout_s);
+  // All that libevent knows come to handle(), which answers 405 itself.
+  evhttp_set_allowed_methods(http, EVHTTP_REQ_GET | EVHTTP_REQ_POST | EVHTTP_REQ_HEAD | EVHTTP_REQ_PUT |
+                                       EVHTTP_REQ_DELETE | EVHTTP_REQ_OPTIONS | EVHTTP_REQ_PATCH);
+  evhttp_set_gencb(
+      http, [](evhttp_request* request, void* self) { static_cast<Impl*>(self)->handle(request); }, this);
+  evhttp_bound_socket* bound = evhttp_bind_socket_with_handle(http, address.host.c_str(), address.port);
+  if (bound == nullptr)
+    return Error{ErrorKind::failed, "[http] listen = \"" + options.listen + "\": " + std::strerror(errno) +
+                                        "; another daemon may run, choose another port"};
+  sockaddr_storage name{};
+  socklen_t size = sizeof name;
+  ::getsockname(evhttp_bound_socket_get_fd(bound), reinterpret_cast<sockaddr*>(&name), &size);
+  port = ntohs(name.ss_family == AF_INET6 ? reinterpret_cast<sockaddr_in6*>(&name)->sin6_port
+                                          : reinterpret_cast<sockaddr_in*>(&name)->sin_port);
+  host = address.host;
+  return {};
+}
+
+Status WebServer::Impl::run() {
+  wake_fd = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  if (wake_fd < 0)
+    return Error{ErrorKind::failed, std::string("web server: eventfd: ") + std::strerror(errno)};
+  wake = event_new(
+      base, wake_fd, EV_READ | EV_PERSIST,
+      [](evutil_socket_t, short, void* self) { static_cast<Impl*>(self)->on_wake(); }, this);
+  event_add(wake, nullptr);
+  heartbeat = event_new(
+      base, -1, EV_PERSIST,
+      [](evutil_socket_t, short, void* self) { static_cast<Impl*>(self)->streams.heartbeat(); }, this);
+  event_add(heartbeat, &kHeartbeat);
+  server_thread = std::thread([this] { serve(); });
+  watcher_thread = std::thread([this] { watch(); });
+  return {};
+}
+
+void WebServer::Impl::serve() {
+  // A browser that closes while it is written to is no reason to end the process.
+  sigset_t pipe;
+  sigemptyset(&pipe);
+  sigaddset(&pipe, SIGPIPE);
+  ::pthread_sigmask(SIG_BLOCK, &pipe, nullptr);
+  event_base_dispatch(base);
+}
+
+void WebServer::Impl::watch() {
+  std::uint64_t last = 0;
+  while (!stopping) {
+    std::string text;
+    const auto asked_at = std::chrono::steady_clock::now();
+    {
+      const auto lease = snapshots.wait_newer(last, kStopCheck);
+      if (lease) {
+        last = lease->number;
+        if (listeners > 0) write_stream_event(*lease, text);
+      } else if (std::chrono::steady_clock::now() - asked_at < kStopCheck / 2) {
+        std::this_thread::sleep_for(kStopCheck);  // a closed channel answers at once
+      }
+    }
+    if (text.empty()) continue;
+    {
+      const std::scoped_lock lock(mutex);
+      if (queue.size() >= kMaxQueued) queue.pop_front();
+      queue.push_back({last, std::make_shared<const std::string>(std::move(text))});
+    }
+    const std::uint64_t one = 1;
+    verify_bug(::write(wake_fd, &one, sizeof one) == sizeof one, "an eventfd takes a count");
+  }
+}
+
+void WebServer::Impl::on_wake() {
+  std::uint64_t count = 0;
+  while (::read(wake_fd, &count, sizeof count) > 0) {
+  }
+  if (stopping) {
+    event_base_loopbreak(base);
+    return;
+  }
+  std::deque<StreamEvent> events;
+  {
+    const std::scoped_lock lock(mutex);
+    events.swap(queue);
+  }
+  for (const StreamEvent& event : events) streams.push(event);
+  listeners = streams.count();
+}
+
+std::optional<Answer> WebServer::Impl::refuse(evhttp_request* request) {
+  const std::string request_host = header(request, "Host");
+  const std::string origin = header(request, "Origin");
+  const evhttp_uri* uri = evhttp_request_get_evhttp_uri(request);
+  const bool foreign = !is_loopback_host_header(request_host) ||
+                       (uri != nullptr && evhttp_uri_get_host(uri) != nullptr) ||
+                       (!origin.empty() && !is_own_origin(origin, request_host));
+  if (!foreign) return std::nullopt;
+  ++counters.refused;
+  return error_answer(403, "only pages of this server on this machine may ask (Host and Origin)");
+}
+
+// What answers a GET of the path; empty: nothing does.
+std::function<Answer()> WebServer::Impl::find(const std::string& path) {
+  struct Route {
+    const char* path;
+    Answer (Impl::*answer)();
+  };
+  static constexpr Route kRoutes[] = {{"/api/v1/status", &Impl::status},
+                                      {"/api/v1/lights", &Impl::lights},
+                                      {"/api/v1/environment.exr", &Impl::environment_exr},
+                                      {"/api/v1/environment.jpg", &Impl::environment_jpg},
+                                      {"/metrics", &Impl::metrics}};
+  for (const Route& route : kRoutes)
+    if (path == route.path) return [this, &route] { return (this->*route.answer)(); };
+  for (const PageFile& file : page_files()) {
+    const std::string own_path = file.name == "index.html"     ? "/"
+                                 : file.name == "openapi.yaml" ? "/api/openapi.yaml"
+                                                               : "/" + std::string(file.name);
+    if (path == own_path)
+      return [&file] { return Answer{200, type_of(file.name), std::string(file.content)}; };
+  }
+  return {};
+}
+
+void WebServer::Impl::handle(evhttp_request* request) {
+  ++counters.requests;
+  if (const auto refused = refuse(request)) return send(request, *refused);
+  const evhttp_uri* uri = evhttp_request_get_evhttp_uri(request);
+  const char* given = uri == nullptr ? nullptr : evhttp_uri_get_path(uri);
+  const std::string path = given == nullptr ? "" : given;
+  const bool is_record = path == "/api/v1/record";
+  const bool is_stream = path == "/api/v1/stream";
+  const auto page = find(path);
+  if (!is_record && !is_stream && !page)
+    return send(request, error_answer(404, "there is nothing at this path"));
+  if (evhttp_request_get_command(request) != (is_record ? EVHTTP_REQ_POST : EVHTTP_REQ_GET)) {
+    const char* allowed = is_record ? "POST" : "GET";
+    evhttp_add_header(evhttp_request_get_output_headers(request), "Allow", allowed);
+    return send(request, error_answer(405, std::string("this path takes ") + allowed));
+  }
+  if (is_record) return send(request, record(body_of(request)));
+  if (is_stream) return open_stream(request);
+  send(request, page());
+}
+
+void WebServer::Impl::open_stream(evhttp_request* request) {
+  if (streams.full()) return send(request, error_answer(503, "too many event streams are open"));
+  add_common_headers(request);
+  StreamEvent first;
+  if (const auto lease = snapshots.wait_newer(0, 0ms)) {
+    std::string text;
+    write_stream_event(*lease, text);
+    first = {lease->number, std::make_shared<const std::string>(std::move(text))};
+  }
+  streams.add(request, first);
+  listeners = streams.count();
+}
+
+Answer WebServer::Impl::status() {
+  return {200, "application/json", status_json(control.status())};
+}
+
+Answer WebServer::Impl::lights() {
+  const auto lease = snapshots.wait_newer(0, 0ms);
+  if (!lease) return error_answer(503, kNoFrame);
+  return {200, "application/json", lights_json(*lease, options.method)};
+}
+
+Answer WebServer::Impl::metrics() {
+  counters.stream_clients = streams.count();
+  counters.stream_dropped = streams.dropped();
+  const auto lease = snapshots.wait_newer(0, 0ms);
+  return {200, "text/plain; version=0.0.4; charset=utf-8",
+          metrics_text(control.status(), lease ? &*lease : nullptr, counters)};
+}
+
+Answer WebServer::Impl::environment_exr() {
+  return picture(exr_picture, "image/x-exr",
+                 [](const Snapshot& s) { return environment_to_exr(lat_long_from_polar_map(s.map)); });
+}
+
+Answer WebServer::Impl::environment_jpg() {
+  return picture(jpg_picture, "image/jpeg", [](const Snapshot& s) {
+    return encode_jpeg(kPictureSize, kPictureSize, fisheye_picture(s.map, kPictureSize));
+  });
+}
+
+Answer WebServer::Impl::picture(Picture& last, const char* type,
+                                Result<std::string> (*make)(const Snapshot&)) {
+  const auto lease = snapshots.wait_newer(0, 0ms);
+  if (!lease) return error_answer(503, kNoFrame);
+  if (last.number != lease->number || last.capture_ns != lease->capture_mono_ns) {
+    auto made = make(*lease);
+    if (!made) return error_answer(500, made.error().message);
+    last = {lease->number, lease->capture_mono_ns, std::move(made).value()};
+  }
+  return {200, type, last.body};
+}
+
+Answer WebServer::Impl::record(const std::string& body) {
+  const auto json = nlohmann::json::parse(body, nullptr, false);
+  if (!json.is_object())
+    return error_answer(400, R"(expected {"action": "start", "file": "name.mkv"} or {"action": "stop"})");
+  const auto text = [&](const char* key) {
+    const auto at = json.find(key);
+    return at != json.end() && at->is_string() ? at->get<std::string>() : std::string();
+  };
+  const std::string action = text("action");
+  if (action != "start" && action != "stop")
+    return error_answer(400, R"(action: expected "start" or "stop")");
+  const std::string file = text("file");
+  if (action == "start")
+    if (const std::string wrong = check_take_name(file); !wrong.empty()) return error_answer(400, wrong);
+  const Status done = action == "start" ? control.start_recording(file) : control.stop_recording();
+  if (done.ok()) return status();
+  // usage: the caller can do better; otherwise the state of the daemon or the disk is in the way.
+  return error_answer(done.error().kind == ErrorKind::usage ? 400 : 409, done.error().message);
+}
+
+}  // namespace lightwell
