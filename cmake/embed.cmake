@@ -9,7 +9,7 @@ foreach(file ${FILES})
   string(REGEX REPLACE "([0-9a-f][0-9a-f])" "\\\\x\\1" escaped "${hex}")
   # Lines of 32 bytes: no line of the table grows beyond what compilers and editors take.
   string(LENGTH "${escaped}" length)
-  set(literal "")
+  set(literal " \"\"")
   set(at 0)
   while(at LESS length)
     string(SUBSTRING "${escaped}" ${at} 128 line)

@@ -373,6 +373,7 @@ void WebServer::Impl::handle(evhttp_request* request) {
 void WebServer::Impl::open_stream(evhttp_request* request) {
   if (streams.full()) return send(request, error_answer(503, "too many event streams are open"));
   add_common_headers(request);
+  listeners = streams.count() + 1;  // before looking: what is published after this comes as an event
   StreamEvent first;
   if (const auto lease = snapshots.wait_newer(0, 0ms)) {
     std::string text;
@@ -380,7 +381,6 @@ void WebServer::Impl::open_stream(evhttp_request* request) {
     first = {lease->number, std::make_shared<const std::string>(std::move(text))};
   }
   streams.add(request, first);
-  listeners = streams.count();
 }
 
 Answer WebServer::Impl::status() {
