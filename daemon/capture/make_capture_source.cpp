@@ -9,6 +9,7 @@
 
 #include "daemon/capture/aravis_source.h"
 #include "daemon/capture/capture_source.h"
+#include "daemon/capture/recording_source.h"
 
 namespace lightwell {
 namespace {
@@ -27,6 +28,7 @@ struct Kind {
 
 constexpr std::array kKinds = {
     Kind{"aravis", "ADDRESS", make_aravis},
+    Kind{"recording", "FILE", make_recording_source},
 };
 
 std::string kinds() {

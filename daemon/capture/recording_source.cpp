@@ -41,6 +41,7 @@ class RecordingSource final : public CaptureSource {
     FrameInfo info;
     Clock::time_point due;
     std::size_t buffer = 0;
+    std::uint64_t lost_before = 0;
   };
   enum class Next { frame, none, end };
 
@@ -93,8 +94,13 @@ RecordingSource::RecordingSource(std::string file, std::unique_ptr<RecordingRead
 
 Status RecordingSource::start() {
   const std::lock_guard lock(mutex_);
-  if (started_) return {};
+  if (thread_.joinable()) return {};
+  if (started_) {  // again, after a stop: from the beginning
+    if (Status status = reader_->rewind(); !status) return status;
+    times_ = RecordedTimes(options_.speed, header_.rate_hz);
+  }
   started_ = true;
+  stopping_ = streaming_ = finished_ = false;
   thread_ = std::thread([this] { run(); });
   return {};
 }
@@ -107,6 +113,12 @@ void RecordingSource::stop() noexcept {
   freed_.notify_all();
   decoded_.notify_all();
   if (thread_.joinable()) thread_.join();
+  const std::lock_guard lock(mutex_);
+  streaming_ = false;
+  for (; ready_count_ > 0; --ready_count_) {
+    free_.push_back(ready(0).buffer);
+    first_ready_ = (first_ready_ + 1) % ready_.size();
+  }
 }
 
 void RecordingSource::give_back(void* self, void* token) noexcept {
@@ -122,6 +134,8 @@ RecordingSource::Decoded RecordingSource::pop() {
   const Decoded oldest = ready(0);
   first_ready_ = (first_ready_ + 1) % ready_.size();
   --ready_count_;
+  ++counters_.received;
+  counters_.lost += oldest.lost_before;
   return oldest;
 }
 
@@ -181,7 +195,7 @@ RecordingSource::Next RecordingSource::decode(std::size_t buffer, Decoded& decod
     return Next::none;
   }
   if (!*read) return Next::end;
-  const std::uint64_t lost = times_.lost_before(**read);
+  decoded.lost_before = times_.lost_before(**read);
   const RecordedTimes::Played played = times_.play(**read);
   decoded.buffer = buffer;
   decoded.due = Clock::time_point(std::chrono::nanoseconds(played.due_mono_ns));
@@ -194,9 +208,6 @@ RecordingSource::Next RecordingSource::decode(std::size_t buffer, Decoded& decod
                   .gain_db = played.frame.gain_db,
                   .temperature_c = played.frame.temperature_c,
                   .complete = true};
-  const std::lock_guard lock(mutex_);
-  ++counters_.received;
-  counters_.lost += lost;
   return Next::frame;
 }
 

@@ -5,6 +5,8 @@
 #include "tests/integration/capture/fake_camera.h"
 #include "tests/support/capture_contract.h"
 #include "tests/support/private_network.h"
+#include "tests/support/takes.h"
+#include "tests/support/temporary_folder.h"
 
 namespace lightwell::test {
 namespace {
@@ -28,6 +30,33 @@ struct AravisSubject {
   std::unique_ptr<CaptureSource> make_silent() { return made("aravis:127.0.0.2"); }  // nobody there
 };
 INSTANTIATE_TYPED_TEST_SUITE_P(Aravis, CaptureContract, AravisSubject);
+
+// A take at 100 Hz, played as recorded; silent is one of whose frames none is whole.
+struct RecordingSubject {
+  TemporaryFolder folder;
+  std::string missing() { return {}; }
+  std::filesystem::path take(const char* name, std::uint32_t count) {
+    const FrameFormat format{16, 12, PixelFormat::mono8};
+    auto frames = take_frames(format, count);
+    for (std::uint32_t i = 0; i < count; ++i) frames[i].info.capture_mono_ns = std::int64_t{i} * 10'000'000;
+    for (auto& frame : frames) frame.info.received_mono_ns = frame.info.capture_mono_ns + 1'000'000;
+    auto header = take_header(format, RecordingCodec::raw);
+    header.rate_hz = 100;
+    write_take(folder.path() / name, header, frames);
+    return folder.path() / name;
+  }
+  std::unique_ptr<CaptureSource> make() { return made("recording:" + take("take.mkv", 1500).string()); }
+  std::unique_ptr<CaptureSource> make_silent() {
+    const auto file = take("silent.mkv", 1);
+    std::string bytes = file_bytes(file);
+    const Codes codes = take_frame({16, 12, PixelFormat::mono8}, 0).codes;
+    const std::size_t at = bytes.find({reinterpret_cast<const char*>(codes.data()), codes.size()});
+    bytes.at(at) ^= 1;
+    write_bytes(file, bytes);
+    return made("recording:" + file.string());
+  }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(Recording, CaptureContract, RecordingSubject);
 
 }  // namespace
 }  // namespace lightwell::test

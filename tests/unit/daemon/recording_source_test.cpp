@@ -4,10 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <thread>
+#include <limits>
 
 #include "daemon/capture/recorded_times.h"
 #include "daemon/pipeline/clock.h"
+#include "tests/support/eventually.h"
 #include "tests/support/takes.h"
 #include "tests/support/temporary_folder.h"
 
@@ -104,11 +105,9 @@ TEST_F(RecordingSourceTest, PacedGivesTheFreshestAndCountsTheRest) {
   ASSERT_NO_FATAL_FAILURE(make_take(100));
   const auto source = start(1000);
   ASSERT_TRUE(source);
-  const auto until = std::chrono::steady_clock::now() + kPatience;
-  // Nobody takes frames: of those that are due only the freshest is kept, and the last of the take is in the
-  // pool.
-  while (source->counters().received < 100 && std::chrono::steady_clock::now() < until)
-    std::this_thread::sleep_for(1ms);
+  // Nobody takes frames: of those that are due only the freshest is kept, and the pool of four holds the
+  // last.
+  ASSERT_TRUE(test::eventually([&] { return source->counters().received >= 96; }));
   std::uint64_t taken = 0;
   std::uint64_t last = 0;
   while (const FrameLease lease = next(*source)) {
@@ -185,6 +184,22 @@ TEST_F(RecordingSourceTest, LeasesOutliveStopAndStopNeedsNoReader) {
   source->stop();
   EXPECT_TRUE(same_codes(lease, frames_[0]));
   EXPECT_FALSE(source->wait(0ms));
+}
+
+TEST_F(RecordingSourceTest, StartAfterStopPlaysFromTheBeginning) {
+  ASSERT_NO_FATAL_FAILURE(make_take(10));
+  const auto source = start(0);
+  ASSERT_TRUE(source);
+  ASSERT_TRUE(next(*source));
+  ASSERT_TRUE(next(*source));
+  source->stop();
+  ASSERT_TRUE(source->start());
+  for (const TakeFrame& expected : frames_) {
+    const FrameLease lease = next(*source);
+    ASSERT_TRUE(lease);
+    EXPECT_TRUE(test::same_bits(info_of(lease), expected.info));
+  }
+  EXPECT_FALSE(next(*source));
 }
 
 TEST_F(RecordingSourceTest, ACutTakePlaysItsWholeFramesAndSaysSo) {
