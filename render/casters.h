@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/scene.h"
+
+namespace lightwell::render {
+
+struct Sphere {
+  Vec3f centre = Vec3f::Zero();
+  float radius = 0;  // 0: empty
+};
+
+// What casts shadows, prepared for shadow maps. Vertices of equal position are welded.
+//
+// A flat primitive with the whole scene on its front side (a floor, a wall of a room) supports the scene: no light from
+// its front can be blocked by it, so such lights leave it out of their maps, and the maps fit the objects.
+struct Casters {
+  std::vector<Vec3f> positions;
+  // Three runs: closed meshes (every edge is shared by two triangles that run along it in opposite directions), open
+  // ones, supports.
+  std::vector<std::uint32_t> indices;
+  std::uint32_t closed_count = 0;
+  std::uint32_t open_count = 0;
+  std::uint32_t support_count = 0;
+  std::vector<Vec3f> support_normals;
+  std::vector<bool> is_support;  // a primitive of the scene
+  Sphere objects;                // bounds closed and open
+  Sphere all;                    // bounds everything that casts
+
+  // True where the light's map needs the supports too.
+  [[nodiscard]] bool needs_supports(const Vec3f& to_light) const;
+};
+
+Casters find_casters(const Scene& scene);
+
+// Within 1 % of the smallest (Bădoiu and Clarkson 2003); contains every point.
+Sphere bounding_sphere(std::span<const Vec3f> points);
+
+}  // namespace lightwell::render

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "lighting/lat_long_image.h"
+#include "lighting/light_set.h"
+#include "render/camera.h"
+#include "render/casters.h"
+#include "render/gbuffer.h"
+#include "render/picture.h"
+#include "render/shadow_atlas.h"
+#include "render/tone_mapper.h"
+
+namespace lightwell::render {
+
+struct RendererOptions {
+  int width = 320;
+  int height = 240;
+  int samples = 1;            // a pixel: 1 at its centre, more spread over it, averaged
+  int shadow_size = 256;      // texels a side of a light's map
+  bool measure_passes = false;  // waits for each pass, to time it
+};
+
+struct PassTimes {
+  double shadow_ms = 0;
+  double gbuffer_ms = 0;
+  double shading_ms = 0;
+  double tonemap_ms = 0;
+};
+
+// Deferred rendering of a scene under directional lights, all of them with shadow maps. Works in the context that is
+// current when it is created. Lights beyond what one uniform block or one atlas holds go in further passes: their number
+// is not limited.
+class Renderer {
+ public:
+  // bad_input: a texture too large for the driver; failed: what the driver cannot do.
+  static Result<Renderer> create(const Scene& scene, const RendererOptions& options);
+
+  Status resize(int width, int height);
+  // Shown where no surface is; row 0 is the zenith. nullptr: nothing, with alpha 0.
+  void set_environment(const LatLongImage* image);
+  // environment_turn_rad turns the shown environment about +Y (a light at azimuth λ comes to λ + angle).
+  Status render(const LightSet& lights, const SceneCamera& camera, double environment_turn_rad = 0);
+  void tone_map(ToneMap operation, double dt_s);
+  void present() const { tone_mapper_.draw_to_window(sums_[current_].texture.id()); }
+
+  [[nodiscard]] RadiancePicture radiance() const;
+  [[nodiscard]] DisplayPicture display() const { return tone_mapper_.read(); }
+  [[nodiscard]] const PassTimes& pass_times() const { return times_; }
+  [[nodiscard]] static std::string gl_renderer();
+  // Largest side of a picture.
+  [[nodiscard]] static int size_limit();
+
+ private:
+  struct Sum {
+    gl::Texture texture;
+    gl::Framebuffer framebuffer;
+  };
+  void shade(const View& view, std::span<const LightRow> rows, const LightSet& lights, bool first_block, bool start_sum,
+             double environment_turn_rad);
+  // Adds the time since start to a pass, where passes are measured.
+  double lap(double start, double& pass) const;
+
+  RendererOptions options_;
+  GBuffer gbuffer_;
+  ShadowAtlas atlas_;
+  ToneMapper tone_mapper_;
+  Casters casters_;
+  gl::Program program_;
+  gl::Buffer light_block_;
+  gl::VertexArray no_vertices_;
+  gl::Texture environment_;
+  bool show_environment_ = false;
+  Sum sums_[2];  // read one, write the other: float blending is not guaranteed
+  int current_ = 0;
+  PassTimes times_;
+};
+
+}  // namespace lightwell::render

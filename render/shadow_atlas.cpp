@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/shadow_atlas.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lightwell::render {
+
+int ShadowAtlas::side_limit() {
+  GLint driver = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &driver);
+  return std::min(4096, static_cast<int>(driver));
+}
+
+Result<ShadowAtlas> ShadowAtlas::create(const Casters& casters, int map_size) {
+  ShadowAtlas atlas;
+  atlas.map_size_ = map_size;
+  atlas.closed_count_ = static_cast<GLsizei>(casters.closed_count);
+  atlas.open_count_ = static_cast<GLsizei>(casters.open_count);
+  atlas.support_count_ = static_cast<GLsizei>(casters.support_count);
+  auto program = gl::make_program("shadow_vertex", "empty_fragment");
+  if (!program) return program.error();
+  atlas.program_ = std::move(program).value();
+  glUniformBlockBinding(atlas.program_.id(), glGetUniformBlockIndex(atlas.program_.id(), "Lights"), 0);
+  atlas.vertex_array_ = gl::make_vertex_array();
+  glBindVertexArray(atlas.vertex_array_.id());
+  atlas.positions_ = gl::make_buffer(GL_ARRAY_BUFFER, casters.positions.data(), casters.positions.size() * sizeof(Vec3f));
+  glEnableVertexAttribArray(0);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vec3f), nullptr);
+  atlas.indices_ = gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, casters.indices.data(),
+                                   casters.indices.size() * sizeof(casters.indices[0]));
+  glBindVertexArray(0);
+  if (Status s = atlas.resize(1); !s) return s.error();
+  return atlas;
+}
+
+int ShadowAtlas::capacity() const {
+  const int side = side_limit() / map_size_;
+  return std::min(kMaxLightsPerBlock, side * side);
+}
+
+Status ShadowAtlas::resize(int tiles) {
+  if (tiles == tiles_) return {};
+  tiles_ = tiles;
+  texture_ = gl::make_texture(GL_DEPTH_COMPONENT16, tiles * map_size_, tiles * map_size_);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  auto framebuffer = gl::make_framebuffer({}, texture_.id());
+  if (!framebuffer) return framebuffer.error();
+  framebuffer_ = std::move(framebuffer).value();
+  return {};
+}
+
+Status ShadowAtlas::draw(std::span<const LightRow> rows) {
+  const auto count = static_cast<GLsizei>(rows.size());
+  const int tiles = std::max(1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count)))));
+  if (Status s = resize(tiles); !s) return s;
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+  glViewport(0, 0, tiles * map_size_, tiles * map_size_);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  glClear(GL_DEPTH_BUFFER_BIT);
+  glUseProgram(program_.id());
+  glUniform1i(gl::uniform(program_, "tiles"), tiles);
+  glUniform1i(gl::uniform(program_, "first_light"), 0);
+  glBindVertexArray(vertex_array_.id());
+  const auto run = [&](GLsizei first_index, GLsizei indices, GLsizei instances) {
+    if (indices == 0 || instances == 0) return;
+    const auto offset = static_cast<std::uintptr_t>(first_index) * sizeof(std::uint32_t);
+    glDrawElementsInstanced(GL_TRIANGLES, indices, GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset), instances);
+  };
+  // Of a closed mesh the side toward the light is the nearer one everywhere: the other half need not be drawn.
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
+  run(0, closed_count_, count);
+  glDisable(GL_CULL_FACE);
+  run(closed_count_, open_count_, count);
+  const auto without = static_cast<GLsizei>(
+      std::count_if(rows.begin(), rows.end(), [](const LightRow& row) { return row.extent_m < 0; }));
+  glUniform1i(gl::uniform(program_, "first_light"), without);
+  run(closed_count_ + open_count_, support_count_, count - without);
+  return {};
+}
+
+}  // namespace lightwell::render
