@@ -96,6 +96,7 @@ Status Renderer::render(const LightSet& lights, const SceneCamera& camera, doubl
   times_ = {};
   const std::vector<LightRow> rows = make_light_rows(lights.lights, casters_, options_.shadow_size);
   const std::span<const LightRow> all(rows);
+  shadow_maps_ = atlas_.empty() ? 0 : rows.size();
   const auto capacity = static_cast<std::size_t>(atlas_.capacity());
   double time = now_ms();
   bool start_sum = true;

@@ -49,6 +49,10 @@ class Renderer {
 
   [[nodiscard]] RadiancePicture radiance() const;
   [[nodiscard]] DisplayPicture display() const { return tone_mapper_.read(); }
+  // Waits until everything is drawn.
+  static void finish() { glFinish(); }
+  // Maps drawn for the last frame: one a light that has power; 0 where nothing casts.
+  [[nodiscard]] std::size_t shadow_maps() const { return shadow_maps_; }
   [[nodiscard]] const PassTimes& pass_times() const { return times_; }
   [[nodiscard]] static std::string gl_renderer();
   // Largest side of a picture.
@@ -77,6 +81,7 @@ class Renderer {
   Sum sums_[2];  // read one, write the other: float blending is not guaranteed
   int current_ = 0;
   PassTimes times_;
+  std::size_t shadow_maps_ = 0;
 };
 
 }  // namespace lightwell::render

@@ -7,8 +7,10 @@
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <vector>
 
+#include "interface/base64.h"
 #include "lighting/vector.h"
 
 namespace lightwell::render {
@@ -127,18 +129,6 @@ Mesh railing() {
   return m;
 }
 
-std::string base64(const std::vector<unsigned char>& bytes) {
-  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (i + k < bytes.size() ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k <= bytes.size() ? kDigits[word >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
-
 // Collects meshes into one buffer and the JSON that describes it.
 class Writer {
  public:
@@ -171,7 +161,7 @@ class Writer {
     root_["scenes"] = json::array({{{"nodes", nodes}}});
     root_["scene"] = 0;
     root_["buffers"] = json::array({{{"byteLength", bytes_.size()},
-                                     {"uri", "data:application/octet-stream;base64," + base64(bytes_)}}});
+                                     {"uri", "data:application/octet-stream;base64," + base64_encode(std::as_bytes(std::span(bytes_)))}}});
     return root_.dump();
   }
 

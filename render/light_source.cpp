@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/light_source.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace lightwell::render {
+namespace {
+
+class FixedLights final : public LightSource {
+ public:
+  explicit FixedLights(LightSet lights) { lights_ = std::move(lights); }
+  Result<bool> update(int frame, std::chrono::milliseconds /*wait*/) override { return frame == 0; }
+};
+
+class LiveLights final : public LightSource {
+ public:
+  LiveLights(const LiveOptions& options, std::unique_ptr<LightReader> lights,
+             std::unique_ptr<EnvironmentReader> environment)
+      : max_lights_(static_cast<std::size_t>(options.max_lights)),
+        domain_(options.dds.domain),
+        reader_(std::move(lights)),
+        environment_reader_(std::move(environment)) {}
+
+  Result<bool> update(int /*frame*/, std::chrono::milliseconds wait) override {
+    if (environment_reader_ && environment_reader_->take(environment_frame_, std::chrono::milliseconds(0)))
+      environment_ = lat_long_from_polar(environment_frame_.map);
+    const bool arrived = reader_->take(frame_, wait);
+    if (arrived) lights_ = take_lights(frame_.light_set(), max_lights_);
+    tell(arrived);
+    return arrived;
+  }
+
+  [[nodiscard]] bool ready() const override { return reader_->age().has_value(); }
+  [[nodiscard]] bool changes() const override { return true; }
+  [[nodiscard]] std::optional<std::chrono::nanoseconds> age() const override { return reader_->age(); }
+  [[nodiscard]] const LatLongImage* environment() const override {
+    return environment_.pixels.empty() ? nullptr : &environment_;
+  }
+
+ private:
+  // A line a change of state, never a line a frame.
+  void tell(bool arrived) {
+    using namespace std::chrono_literals;
+    const auto age = reader_->age();
+    const State now = !age ? State::waiting : arrived || *age < 2s ? State::flowing : State::stopped;
+    if (now == told_) return;
+    if (now == State::waiting)
+      std::fprintf(stderr, "lightwell-render: waiting for light on DDS domain %d\n", domain_);
+    if (now == State::flowing)
+      std::fprintf(stderr, "lightwell-render: light from probe '%s'\n", reader_->probe().c_str());
+    if (now == State::stopped)
+      std::fprintf(stderr, "lightwell-render: no light for 2 s; keeping the last\n");
+    told_ = now;
+  }
+
+  enum class State { unknown, waiting, flowing, stopped };
+  std::size_t max_lights_;
+  int domain_;
+  std::unique_ptr<LightReader> reader_;
+  std::unique_ptr<EnvironmentReader> environment_reader_;
+  LightFrame frame_;
+  EnvironmentFrame environment_frame_;
+  LatLongImage environment_;
+  State told_ = State::unknown;
+};
+
+}  // namespace
+
+std::unique_ptr<LightSource> fixed_lights(const LightSet& lights, int max_lights) {
+  return std::make_unique<FixedLights>(max_lights > 0 ? take_lights(lights, static_cast<std::size_t>(max_lights))
+                                                      : lights);
+}
+
+Result<std::unique_ptr<LightSource>> live_lights(const LiveOptions& options) {
+  auto domain = DdsDomain::open(options.dds);
+  if (!domain) return domain.error();
+  auto lights = LightReader::create(*domain);
+  if (!lights) return lights.error();
+  std::unique_ptr<EnvironmentReader> environment;
+  if (options.with_environment) {
+    auto reader = EnvironmentReader::create(*domain);
+    if (!reader) return reader.error();
+    environment = std::move(reader).value();
+  }
+  return std::unique_ptr<LightSource>(
+      std::make_unique<LiveLights>(options, std::move(lights).value(), std::move(environment)));
+}
+
+LatLongImage lat_long_from_polar(const PolarMap& map) {
+  LatLongImage image;
+  image.width = map.grid.sectors;
+  image.height = std::max(1, static_cast<int>(std::lround(map.grid.rings * kPi / map.grid.theta_max_rad)));
+  image.pixels.assign(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height), Rgb::Zero());
+  for (int y = 0; y < image.height; ++y) {
+    const double theta = kPi * (y + 0.5) / image.height;
+    if (theta >= map.grid.theta_max_rad) break;
+    const auto ring = std::min(static_cast<int>(theta / map.grid.theta_max_rad * map.grid.rings), map.grid.rings - 1);
+    for (int x = 0; x < image.width; ++x) {
+      const Spherical s = spherical_from_direction(direction_from_lat_long((x + 0.5) / image.width, 0.5));
+      const auto sector = std::min(static_cast<int>(s.lambda_rad / (2 * kPi) * map.grid.sectors), map.grid.sectors - 1);
+      image.at(x, y) = map.rgb(static_cast<std::size_t>(ring) * static_cast<std::size_t>(map.grid.sectors) +
+                               static_cast<std::size_t>(sector));
+    }
+  }
+  return image;
+}
+
+}  // namespace lightwell::render

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/frame_name.h"
+#include "render/tone_mapper.h"
+
+namespace lightwell::render {
+
+// The command line of lightwell-render, checked.
+struct Options {
+  std::filesystem::path scene;
+  bool live = false;
+  int domain = 0;
+  std::string interface = "lo";
+  std::filesystem::path light_set;
+  int shadow_maps = 0;  // 0: all lights, live 72
+  int shadow_size = 256;
+  int width = 640;
+  int height = 480;
+  std::string camera;
+  int samples = 1;
+  bool background_environment = false;
+  ToneMap tone_map = ToneMap::reinhard;
+  bool headless = false;
+  std::optional<int> frames;
+  std::optional<double> seconds;
+  std::vector<FrameName> outputs;
+  std::filesystem::path stats;
+};
+
+// Options, or the exit code where there is nothing to run (help, wrong usage: said on stderr in one line).
+struct Parsed {
+  std::optional<Options> options;
+  int exit_code = 0;
+};
+Parsed parse_options(int argc, const char* const* argv);
+
+}  // namespace lightwell::render

@@ -1,0 +1,256 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/session.h"
+
+#include <time.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+
+#include "interface/atomic_file.h"
+#include "interface/light_set_io.h"
+#include "render/egl_context.h"
+#include "render/gltf_scene.h"
+#include "render/light_source.h"
+#include "render/renderer.h"
+#include "render/statistics.h"
+#include "render/window.h"
+
+namespace lightwell::render {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr int kLiveLights = 72;  // what two cores without a GPU draw several times a second
+
+void say(const std::string& line) { std::fprintf(stderr, "lightwell-render: %s\n", line.c_str()); }
+
+double cpu_ms() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
+}
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+Result<SceneCamera> choose_camera(const Scene& scene, const Options& options) {
+  if (options.camera.empty() && !scene.cameras.empty()) return scene.cameras.front();
+  for (const SceneCamera& camera : scene.cameras)
+    if (camera.name == options.camera || camera.node_name == options.camera) return camera;
+  if (!options.camera.empty()) {
+    std::string names;
+    for (const SceneCamera& camera : scene.cameras) names += (names.empty() ? "'" : ", '") + camera.name + "'";
+    return Error{ErrorKind::usage, "--camera " + options.camera + ": not in " + options.scene.string() +
+                                       (names.empty() ? ", which has none" : ", which has " + names)};
+  }
+  say(options.scene.string() + " has no perspective camera; one that sees all of it is used");
+  return fitted_camera(scene);
+}
+
+Result<std::unique_ptr<LightSource>> open_lights(const Options& options) {
+  if (options.live) {
+    LiveOptions live;
+    live.dds = {options.domain, options.interface};
+    live.max_lights = options.shadow_maps > 0 ? options.shadow_maps : kLiveLights;
+    live.with_environment = options.background_environment;
+    return live_lights(live);
+  }
+  auto set = read_light_set(options.light_set);
+  if (!set) return set.error();
+  return fixed_lights(*set, options.shadow_maps);
+}
+
+// Everything that cannot work is found before the first frame is rendered.
+Status check_outputs(const Options& options) {
+  std::vector<std::filesystem::path> files;
+  for (const FrameName& name : options.outputs) files.push_back(name.file(0));
+  if (!options.stats.empty()) files.push_back(options.stats);
+  for (const auto& file : files) {
+    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(folder, ignored))
+      return Error{ErrorKind::failed, file.string() + ": folder " + folder.string() + " does not exist"};
+  }
+  return {};
+}
+
+bool has_display() { return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr; }
+
+class Session {
+ public:
+  Session(const Options& options, const std::atomic<bool>& stop, const Scene& scene, SceneCamera camera,
+          LightSource& source)
+      : options_(options), stop_(stop), scene_(scene), camera_(std::move(camera)), source_(source) {}
+
+  Status prepare() {
+    if (Status s = check_driver(); !s) return s;
+    RendererOptions renderer_options;
+    renderer_options.width = options_.width;
+    renderer_options.height = options_.height;
+    renderer_options.samples = options_.samples;
+    renderer_options.shadow_size = options_.shadow_size;
+    renderer_options.measure_passes = !options_.stats.empty();
+    auto renderer = Renderer::create(scene_, renderer_options);
+    if (!renderer) return renderer.error();
+    renderer_.emplace(std::move(renderer).value());
+    statistics_.shadow_size = options_.shadow_size;
+    statistics_.triangles = scene_.triangles();
+    statistics_.gl_renderer = Renderer::gl_renderer();
+    return {};
+  }
+
+  Status run_off_screen() {
+    const std::optional<int> frames =
+        options_.frames || options_.seconds || options_.live ? options_.frames : std::optional<int>(1);
+    while (!over(frames)) {
+      const auto fresh = source_.update(frame_, std::chrono::milliseconds(20));
+      if (!fresh) return fresh.error();
+      // Live frames are as many as lights arrive: the same light twice would be the same picture.
+      if (!source_.ready() || (source_.changes() && !*fresh)) continue;
+      if (Status s = render(camera_); !s) return s;
+    }
+    if (frame_ == 0 && !stop_)
+      return Error{ErrorKind::failed, "no light arrived on DDS domain " + std::to_string(options_.domain)};
+    return finish();
+  }
+
+  Status run_window(Window& window) {
+    int shown = 0;
+    auto title_time = Clock::now();
+    while (!over(options_.frames) && !window.closed()) {
+      const auto fresh = source_.update(frame_, std::chrono::milliseconds(0));
+      if (!fresh) return fresh.error();
+      const bool changed = window.take_changed();
+      const auto [width, height] = window.size();
+      if (width > 0 && height > 0 && (*fresh || changed || options_.frames.has_value())) {
+        if (Status s = renderer_->resize(width, height); !s) return s;
+        if (Status s = render(window.camera()); !s) return s;
+        renderer_->present();
+        window.show();
+        ++shown;
+        window.poll();
+      } else {
+        window.poll(0.01);
+      }
+      if (seconds_since(title_time) >= 0.5) {
+        window.set_title(title(shown / seconds_since(title_time)));
+        title_time = Clock::now();
+        shown = 0;
+      }
+    }
+    return finish();
+  }
+
+ private:
+  Status check_driver() const {
+    const int side = Renderer::size_limit();
+    if (options_.width > side || options_.height > side)
+      return Error{ErrorKind::usage, "--size: this driver allows 1 to " + std::to_string(side) + " a side"};
+    if (options_.shadow_size > ShadowAtlas::side_limit())
+      return Error{ErrorKind::usage,
+                   "--shadow-size: this driver allows 16 to " + std::to_string(ShadowAtlas::side_limit())};
+    return {};
+  }
+
+  [[nodiscard]] bool over(std::optional<int> frames) const {
+    return stop_ || (frames && frame_ >= *frames) || (options_.seconds && seconds_since(start_) >= *options_.seconds);
+  }
+
+  Status render(const SceneCamera& camera) {
+    if (options_.background_environment) renderer_->set_environment(source_.environment());
+    Statistics::Frame times;
+    const auto start = Clock::now();
+    const double cpu_start = cpu_ms();
+    // Frames of a sequence are 1/25 s apart, live ones as far as they are.
+    const double dt_s = source_.changes() && options_.live ? seconds_since(last_frame_) : 0.04;
+    last_frame_ = start;
+    if (Status s = renderer_->render(source_.lights(), camera, source_.environment_turn_rad()); !s) return s;
+    renderer_->tone_map(options_.tone_map, dt_s);
+    renderer_->finish();
+    times.ms = seconds_since(start) * 1e3;
+    times.cpu_ms = cpu_ms() - cpu_start;
+    times.passes = renderer_->pass_times();
+    if (!options_.stats.empty()) statistics_.frames.push_back(times);
+    statistics_.lights = source_.lights().lights.size();
+    statistics_.shadow_maps = renderer_->shadow_maps();
+    const int number = frame_++;
+    return write(number, true);
+  }
+
+  Status write(int number, bool numbered) {
+    for (const FrameName& name : options_.outputs) {
+      if (name.numbered != numbered) continue;
+      const Status written = name.format == FrameName::Format::exr ? write_exr(name.file(number), renderer_->radiance())
+                                                                   : write_png(name.file(number), renderer_->display());
+      if (!written) return written;
+    }
+    return {};
+  }
+
+  Status finish() {
+    if (frame_ > 0)
+      if (Status s = write(frame_ - 1, false); !s) return s;
+    if (!options_.stats.empty()) return write_file_atomically(options_.stats, statistics_.json());
+    return {};
+  }
+
+  [[nodiscard]] std::string title(double fps) const {
+    char text[160];
+    std::snprintf(text, sizeof text, "Lightwell – %.1f fps – %zu lights", fps, source_.lights().lights.size());
+    std::string line = text;
+    if (const auto age = source_.age()) {
+      std::snprintf(text, sizeof text, " – light %.1f s old", std::chrono::duration<double>(*age).count());
+      line += text;
+    } else if (!source_.ready()) {
+      line += " – waiting for light";
+    }
+    return line;
+  }
+
+  const Options& options_;
+  const std::atomic<bool>& stop_;
+  const Scene& scene_;
+  SceneCamera camera_;
+  LightSource& source_;
+  std::optional<Renderer> renderer_;
+  Statistics statistics_;
+  int frame_ = 0;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_frame_ = Clock::now();
+};
+
+}  // namespace
+
+Status run_session(const Options& options, const std::atomic<bool>& stop) {
+  if (Status s = check_outputs(options); !s) return s;
+  auto scene = read_gltf(options.scene);
+  if (!scene) return scene.error();
+  if (scene->dropped_triangles > 0)
+    say(options.scene.string() + ": " + std::to_string(scene->dropped_triangles) + " triangles of no area left out");
+  auto camera = choose_camera(*scene, options);
+  if (!camera) return camera.error();
+  auto source = open_lights(options);
+  if (!source) return source.error();
+
+  // Made after the context and gone before it.
+  const auto run = [&](Window* window) -> Status {
+    Session session(options, stop, *scene, *camera, **source);
+    if (Status s = session.prepare(); !s) return s;
+    return window != nullptr ? session.run_window(*window) : session.run_off_screen();
+  };
+  const bool has_purpose = !options.outputs.empty() || options.frames || options.seconds || !options.stats.empty();
+  if (!options.headless && has_display()) {
+    auto window = Window::open(options.width, options.height, Orbit(*camera, *scene));
+    if (window) return run(window->get());
+    if (!has_purpose) return window.error();
+    say(window.error().message + "; rendering off-screen");
+  } else if (!options.headless && !has_purpose) {
+    return Error{ErrorKind::failed, "no display for a window; --headless with --out, --frames or --seconds renders without"};
+  }
+  auto context = EglContext::create();
+  if (!context) return context.error();
+  return run(nullptr);
+}
+
+}  // namespace lightwell::render

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace lightwell::render {
+namespace {
+
+// The smallest value that a share of all values does not exceed; null of none.
+template <class Get>
+nlohmann::json percentile(const std::vector<Statistics::Frame>& frames, double share, Get get) {
+  if (frames.empty()) return nullptr;
+  std::vector<double> values;
+  values.reserve(frames.size());
+  for (const auto& frame : frames) values.push_back(get(frame));
+  std::sort(values.begin(), values.end());
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  return values[std::max<std::size_t>(rank, 1) - 1];
+}
+
+}  // namespace
+
+std::string Statistics::json() const {
+  using F = Frame;
+  const auto pass = [&](double PassTimes::*time) { return percentile(frames, 0.5, [=](const F& f) { return f.passes.*time; }); };
+  const auto ms = [](const F& f) { return f.ms; };
+  const nlohmann::ordered_json report = {
+      {"frames", frames.size()},
+      {"ms", {{"p50", percentile(frames, 0.5, ms)}, {"p99", percentile(frames, 0.99, ms)}}},
+      {"cpu_ms", {{"p50", percentile(frames, 0.5, [](const F& f) { return f.cpu_ms; })}}},
+      {"passes",
+       {{"shadow", pass(&PassTimes::shadow_ms)},
+        {"gbuffer", pass(&PassTimes::gbuffer_ms)},
+        {"shading", pass(&PassTimes::shading_ms)},
+        {"tonemap", pass(&PassTimes::tonemap_ms)}}},
+      {"lights", lights},
+      {"shadow_maps", shadow_maps},
+      {"shadow_size", shadow_size},
+      {"triangles", triangles},
+      {"predicted_error", nullptr},
+      {"gl_renderer", gl_renderer}};
+  return report.dump(2) + "\n";
+}
+
+}  // namespace lightwell::render

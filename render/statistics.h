@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lighting/result.h"
+#include "render/renderer.h"
+
+namespace lightwell::render {
+
+// What --stats reports of a run (keys: docs and the command's help).
+struct Statistics {
+  struct Frame {
+    double ms = 0;      // wall time from light and camera to the finished picture
+    double cpu_ms = 0;  // processor time of the whole program in it
+    PassTimes passes;
+  };
+  std::vector<Frame> frames;
+  std::size_t lights = 0;
+  std::size_t shadow_maps = 0;
+  int shadow_size = 0;
+  std::size_t triangles = 0;
+  std::string gl_renderer;
+
+  // Passes are medians. A run without frames reports nulls.
+  [[nodiscard]] std::string json() const;
+};
+
+}  // namespace lightwell::render
