@@ -38,7 +38,8 @@ Mat4f look_at(const Vec3f& eye, const Vec3f& back) {
 }  // namespace
 
 View make_view(const SceneCamera& camera, int width, int height, const Vec2f& offset_px) {
-  const float aspect = camera.aspect > 0 ? camera.aspect : static_cast<float>(width) / static_cast<float>(height);
+  const float aspect =
+      camera.aspect > 0 ? camera.aspect : static_cast<float>(width) / static_cast<float>(height);
   const float tan_y = std::tan(camera.yfov_rad / 2);
   const float tan_x = tan_y * aspect;
   const Mat4f camera_from_world = camera.world_from_camera.inverse();

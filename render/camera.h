@@ -10,7 +10,8 @@ namespace lightwell::render {
 struct View {
   Mat4f clip_from_world = Mat4f::Identity();
   Vec3f eye = Vec3f::Zero();
-  // Direction through a point of the picture: forward + right · x + up · y, x and y in [−1, 1], +y at the top.
+  // Direction through a point of the picture: forward + right · x + up · y, x and y in [−1, 1], +y at the
+  // top.
   Vec3f forward = -Vec3f::UnitZ();
   Vec3f right = Vec3f::UnitX();
   Vec3f up = Vec3f::UnitY();

@@ -40,7 +40,8 @@ bool is_closed(std::span<const Index> triangles) {
   return !triangles.empty();
 }
 
-// The front-facing normal where the triangles lie in one plane, facing one way, with the scene at or above it.
+// The front-facing normal where the triangles lie in one plane, facing one way, with the scene at or above
+// it.
 std::optional<Vec3f> support_normal(std::span<const Index> triangles, const std::vector<Vec3f>& positions,
                                     float tolerance, const Scene& scene) {
   const auto normal_of = [&](std::size_t t) {
@@ -129,7 +130,13 @@ Casters find_casters(const Scene& scene) {
   for (const auto* run : {&closed, &open})
     for (const Index i : *run) object_points.push_back(casters.positions[i]);
   casters.objects = bounding_sphere(object_points);
-  casters.all = supports.empty() ? casters.objects : bounding_sphere(casters.positions);
+  for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
+    const Primitive& primitive = scene.primitives[p];
+    if (primitive.casts_shadow) continue;
+    for (Index i = 0; i < primitive.index_count; ++i)
+      object_points.push_back(scene.vertices[scene.indices[primitive.first_index + i]].position);
+  }
+  casters.scene = bounding_sphere(object_points);
   return casters;
 }
 

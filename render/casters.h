@@ -17,12 +17,14 @@ struct Sphere {
 
 // What casts shadows, prepared for shadow maps. Vertices of equal position are welded.
 //
-// A flat primitive with the whole scene on its front side (a floor, a wall of a room) supports the scene: no light from
-// its front can be blocked by it, so such lights leave it out of their maps, and the maps fit the objects.
+// A flat primitive with the whole scene on its front side (a floor, a wall of a room) supports the scene. It
+// cannot block a light in front of it, and blocks everything else from a light behind it. So maps never have
+// to reach over it: they fit the objects, and supports are drawn into the maps of lights behind them, nearer
+// than everything.
 struct Casters {
   std::vector<Vec3f> positions;
-  // Three runs: closed meshes (every edge is shared by two triangles that run along it in opposite directions), open
-  // ones, supports.
+  // Three runs: closed meshes (every edge is shared by two triangles that run along it in opposite
+  // directions), open ones, supports.
   std::vector<std::uint32_t> indices;
   std::uint32_t closed_count = 0;
   std::uint32_t open_count = 0;
@@ -30,9 +32,9 @@ struct Casters {
   std::vector<Vec3f> support_normals;
   std::vector<bool> is_support;  // a primitive of the scene
   Sphere objects;                // bounds closed and open
-  Sphere all;                    // bounds everything that casts
+  Sphere scene;                  // bounds all but the supports, casting or not
 
-  // True where the light's map needs the supports too.
+  // True where the light is behind a support.
   [[nodiscard]] bool needs_supports(const Vec3f& to_light) const;
 };
 

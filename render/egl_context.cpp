@@ -10,7 +10,8 @@
 namespace lightwell::render {
 namespace {
 
-// Mesa's surfaceless platform first; NVIDIA's driver offers devices instead; then whatever EGL takes as its default.
+// Mesa's surfaceless platform first; NVIDIA's driver offers devices instead; then whatever EGL takes as its
+// default.
 EGLDisplay open_display() {
   const auto platform_display =
       reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
@@ -18,9 +19,11 @@ EGLDisplay open_display() {
     return display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) == EGL_TRUE;
   };
   if (platform_display != nullptr) {
-    const EGLDisplay surfaceless = platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+    const EGLDisplay surfaceless =
+        platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
     if (try_display(surfaceless)) return surfaceless;
-    const auto query_devices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
+    const auto query_devices =
+        reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
     EGLDeviceEXT device = nullptr;
     EGLint count = 0;
     if (query_devices != nullptr && query_devices(1, &device, &count) == EGL_TRUE && count > 0) {
@@ -37,12 +40,14 @@ EGLDisplay open_display() {
 Result<EglContext> EglContext::create() {
   const EGLDisplay display = open_display();
   if (display == EGL_NO_DISPLAY)
-    return Error{ErrorKind::failed, "no EGL driver for off-screen rendering (packages libegl-mesa0, libgl1-mesa-dri)"};
+    return Error{ErrorKind::failed,
+                 "no EGL driver for off-screen rendering (packages libegl-mesa0, libgl1-mesa-dri)"};
   eglBindAPI(EGL_OPENGL_ES_API);
   const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 1, EGL_NONE};
   const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
   EglContext result(display, context);
-  if (context == EGL_NO_CONTEXT || eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) != EGL_TRUE)
+  if (context == EGL_NO_CONTEXT ||
+      eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) != EGL_TRUE)
     return Error{ErrorKind::failed, "this machine's EGL driver has no OpenGL ES 3.1 without a window"};
   return result;
 }

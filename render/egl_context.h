@@ -8,7 +8,8 @@
 
 namespace lightwell::render {
 
-// An OpenGL ES 3.1 context without a window or a display server, current on the calling thread while it lives.
+// An OpenGL ES 3.1 context without a window or a display server, current on the calling thread while it
+// lives.
 class EglContext {
  public:
   // failed: no EGL driver, or none with OpenGL ES 3.1.

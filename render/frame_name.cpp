@@ -9,12 +9,15 @@ namespace lightwell::render {
 std::filesystem::path FrameName::file(int frame) const {
   if (!numbered) return before + after;
   std::string number = std::to_string(frame);
-  if (static_cast<int>(number.size()) < digits) number.insert(0, static_cast<std::size_t>(digits) - number.size(), '0');
+  if (static_cast<int>(number.size()) < digits)
+    number.insert(0, static_cast<std::size_t>(digits) - number.size(), '0');
   return before + number + after;
 }
 
 Result<FrameName> FrameName::parse(const std::string& pattern) {
-  const auto wrong = [&](const char* why) { return Error{ErrorKind::usage, "--out " + pattern + ": " + why}; };
+  const auto wrong = [&](const char* why) {
+    return Error{ErrorKind::usage, "--out " + pattern + ": " + why};
+  };
   FrameName name;
   const std::string ending = std::filesystem::path(pattern).extension().string();
   if (ending != ".exr" && ending != ".png") return wrong("must end in .exr or .png");
@@ -26,7 +29,8 @@ Result<FrameName> FrameName::parse(const std::string& pattern) {
   }
   const std::size_t letter = pattern.find_first_not_of("0123456789", percent + 1);
   const std::string digits = pattern.substr(percent + 1, letter - percent - 1);
-  if (letter == std::string::npos || pattern[letter] != 'd' || digits.size() > 2 || (!digits.empty() && digits[0] != '0'))
+  if (letter == std::string::npos || pattern[letter] != 'd' || digits.size() > 2 ||
+      (!digits.empty() && digits[0] != '0'))
     return wrong("the frame number is written %d or %04d");
   if (pattern.find('%', letter) != std::string::npos) return wrong("has more than one frame number");
   name.numbered = true;

@@ -17,7 +17,8 @@ gl::Texture upload(const TextureImage& image, GLenum format) {
   glBindTexture(GL_TEXTURE_2D, id);
   const int levels = 1 + static_cast<int>(std::floor(std::log2(std::max(image.width, image.height))));
   glTexStorage2D(GL_TEXTURE_2D, levels, format, image.width, image.height);
-  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE,
+                  image.rgba.data());
   glGenerateMipmap(GL_TEXTURE_2D);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
@@ -25,14 +26,20 @@ gl::Texture upload(const TextureImage& image, GLenum format) {
 }
 
 gl::Texture upload_materials(const std::vector<Material>& materials) {
-  const int rows = std::max<int>(1, (static_cast<int>(materials.size()) * 2 + kMaterialRow - 1) / kMaterialRow);
+  const int rows =
+      std::max<int>(1, (static_cast<int>(materials.size()) * 2 + kMaterialRow - 1) / kMaterialRow);
   std::vector<float> texels(static_cast<std::size_t>(rows * kMaterialRow) * 4, 0.0f);
   float* out = texels.data();
   for (const Material& m : materials) {
     const bool phong = m.model == Material::Model::phong;
-    const float row[8] = {m.base_color[0], m.base_color[1], m.base_color[2], phong ? 1.0f : 0.0f,
-                          phong ? m.specular[0] : m.metallic, phong ? m.specular[1] : m.roughness,
-                          phong ? m.specular[2] : 0.0f, phong ? m.exponent : 0.0f};
+    const float row[8] = {m.base_color[0],
+                          m.base_color[1],
+                          m.base_color[2],
+                          phong ? 1.0f : 0.0f,
+                          phong ? m.specular[0] : m.metallic,
+                          phong ? m.specular[1] : m.roughness,
+                          phong ? m.specular[2] : 0.0f,
+                          phong ? m.exponent : 0.0f};
     out = std::copy_n(row, 8, out);
   }
   gl::Texture texture = gl::make_texture(GL_RGBA32F, kMaterialRow, rows);
@@ -67,15 +74,17 @@ Result<GBuffer> GBuffer::create(const Scene& scene, const Casters& casters) {
     const Primitive& p = scene.primitives[i];
     const Material& m = scene.materials[static_cast<std::size_t>(p.material)];
     const float in_shadow_map = !p.casts_shadow ? 0.0f : casters.is_support[i] ? 0.5f : 1.0f;
-    g.draws_.push_back({p, in_shadow_map, texture(m.base_color_texture, 0), texture(m.metallic_roughness_texture, 1),
-                        m.double_sided});
+    g.draws_.push_back({p, in_shadow_map, texture(m.base_color_texture, 0),
+                        texture(m.metallic_roughness_texture, 1), m.double_sided});
   }
   g.vertex_array_ = gl::make_vertex_array();
   glBindVertexArray(g.vertex_array_.id());
-  g.vertices_ = gl::make_buffer(GL_ARRAY_BUFFER, scene.vertices.data(), scene.vertices.size() * sizeof(Vertex));
+  g.vertices_ =
+      gl::make_buffer(GL_ARRAY_BUFFER, scene.vertices.data(), scene.vertices.size() * sizeof(Vertex));
   const auto attribute = [](GLuint index, GLint components, std::size_t offset) {
     glEnableVertexAttribArray(index);
-    glVertexAttribPointer(index, components, GL_FLOAT, GL_FALSE, sizeof(Vertex), reinterpret_cast<const void*>(offset));
+    glVertexAttribPointer(index, components, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                          reinterpret_cast<const void*>(offset));
   };
   attribute(0, 3, offsetof(Vertex, position));
   attribute(1, 3, offsetof(Vertex, normal));
@@ -118,8 +127,10 @@ void GBuffer::draw(const View& view) {
   glBindVertexArray(vertex_array_.id());
   glCullFace(GL_BACK);
   for (const Draw& draw : draws_) {
-    if (draw.double_sided) glDisable(GL_CULL_FACE);
-    else glEnable(GL_CULL_FACE);
+    if (draw.double_sided)
+      glDisable(GL_CULL_FACE);
+    else
+      glEnable(GL_CULL_FACE);
     gl::bind_texture(0, draw.base_color);
     gl::bind_texture(1, draw.metallic_roughness);
     glUniform1f(material_number, static_cast<float>(draw.primitive.material + 1));

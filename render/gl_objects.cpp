@@ -74,7 +74,8 @@ Result<Framebuffer> make_framebuffer(const std::vector<GLuint>& colour, GLuint d
   if (targets.empty()) targets.push_back(GL_NONE);
   glDrawBuffers(static_cast<GLsizei>(targets.size()), targets.data());
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    return Error{ErrorKind::failed, "this OpenGL ES driver cannot render to float textures (EXT_color_buffer_float)"};
+    return Error{ErrorKind::failed,
+                 "this OpenGL ES driver cannot render to float textures (EXT_color_buffer_float)"};
   return framebuffer;
 }
 
@@ -92,7 +93,8 @@ VertexArray make_vertex_array() {
   return VertexArray(id);
 }
 
-Result<Program> make_program(const std::string& vertex, const std::string& fragment, const std::string& defines) {
+Result<Program> make_program(const std::string& vertex, const std::string& fragment,
+                             const std::string& defines) {
   Program program(glCreateProgram());
   if (Status s = attach(program, GL_VERTEX_SHADER, vertex, defines); !s) return s.error();
   if (Status s = attach(program, GL_FRAGMENT_SHADER, fragment, defines); !s) return s.error();

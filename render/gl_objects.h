@@ -32,11 +32,21 @@ class Handle {
   GLuint id_ = 0;
 };
 
-inline void destroy_texture(GLuint id) { glDeleteTextures(1, &id); }
-inline void destroy_buffer(GLuint id) { glDeleteBuffers(1, &id); }
-inline void destroy_framebuffer(GLuint id) { glDeleteFramebuffers(1, &id); }
-inline void destroy_vertex_array(GLuint id) { glDeleteVertexArrays(1, &id); }
-inline void destroy_program(GLuint id) { glDeleteProgram(id); }
+inline void destroy_texture(GLuint id) {
+  glDeleteTextures(1, &id);
+}
+inline void destroy_buffer(GLuint id) {
+  glDeleteBuffers(1, &id);
+}
+inline void destroy_framebuffer(GLuint id) {
+  glDeleteFramebuffers(1, &id);
+}
+inline void destroy_vertex_array(GLuint id) {
+  glDeleteVertexArrays(1, &id);
+}
+inline void destroy_program(GLuint id) {
+  glDeleteProgram(id);
+}
 
 using Texture = Handle<destroy_texture>;
 using Buffer = Handle<destroy_buffer>;
@@ -52,10 +62,13 @@ Buffer make_buffer(GLenum target, const void* data, std::size_t bytes, GLenum us
 VertexArray make_vertex_array();
 
 // Compiles render/shaders/<vertex>.glsl and <fragment>.glsl. defines: lines put before both.
-Result<Program> make_program(const std::string& vertex, const std::string& fragment, const std::string& defines = "");
+Result<Program> make_program(const std::string& vertex, const std::string& fragment,
+                             const std::string& defines = "");
 Result<Program> make_compute_program(const std::string& compute);
 
-inline GLint uniform(const Program& program, const char* name) { return glGetUniformLocation(program.id(), name); }
+inline GLint uniform(const Program& program, const char* name) {
+  return glGetUniformLocation(program.id(), name);
+}
 void bind_texture(int unit, GLuint texture);
 
 }  // namespace lightwell::render::gl

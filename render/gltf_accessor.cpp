@@ -11,7 +11,9 @@
 namespace lightwell::render {
 namespace {
 
-Error bad(const std::string& what, const std::string& why) { return {ErrorKind::bad_input, what + ": " + why}; }
+Error bad(const std::string& what, const std::string& why) {
+  return {ErrorKind::bad_input, what + ": " + why};
+}
 
 // A checked window on an accessor's bytes.
 struct View {
@@ -34,13 +36,18 @@ double load(const unsigned char* p) {
 
 double View::component(const unsigned char* p) const {
   switch (component_type) {
-    case TINYGLTF_COMPONENT_TYPE_FLOAT: return load<float>(p);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return load<std::uint32_t>(p);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return load<std::uint16_t>(p) / (normalized ? 65535.0 : 1.0);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return *p / (normalized ? 255.0 : 1.0);
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+      return load<float>(p);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      return load<std::uint32_t>(p);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return load<std::uint16_t>(p) / (normalized ? 65535.0 : 1.0);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return *p / (normalized ? 255.0 : 1.0);
     case TINYGLTF_COMPONENT_TYPE_SHORT:
       return normalized ? std::max(load<std::int16_t>(p) / 32767.0, -1.0) : load<std::int16_t>(p);
-    default: return normalized ? std::max(load<std::int8_t>(p) / 127.0, -1.0) : load<std::int8_t>(p);
+    default:
+      return normalized ? std::max(load<std::int8_t>(p) / 127.0, -1.0) : load<std::int8_t>(p);
   }
 }
 
@@ -83,8 +90,8 @@ Result<std::vector<float>> read_floats(const tinygltf::Model& model, int accesso
                                        const std::string& what) {
   const auto v = view(model, accessor, components, what);
   if (!v) return v.error();
-  const auto component_bytes =
-      static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(v->component_type)));
+  const auto component_bytes = static_cast<std::size_t>(
+      tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(v->component_type)));
   std::vector<float> values;
   values.reserve(v->count * static_cast<std::size_t>(components));
   for (std::size_t i = 0; i < v->count; ++i)
@@ -96,12 +103,12 @@ Result<std::vector<float>> read_floats(const tinygltf::Model& model, int accesso
   return values;
 }
 
-Result<std::vector<std::uint32_t>> read_indices(const tinygltf::Model& model, int accessor, std::size_t vertex_count,
-                                                const std::string& what) {
+Result<std::vector<std::uint32_t>> read_indices(const tinygltf::Model& model, int accessor,
+                                                std::size_t vertex_count, const std::string& what) {
   const auto v = view(model, accessor, 1, what);
   if (!v) return v.error();
-  if (v->component_type == TINYGLTF_COMPONENT_TYPE_FLOAT || v->component_type == TINYGLTF_COMPONENT_TYPE_SHORT ||
-      v->component_type == TINYGLTF_COMPONENT_TYPE_BYTE)
+  if (v->component_type == TINYGLTF_COMPONENT_TYPE_FLOAT ||
+      v->component_type == TINYGLTF_COMPONENT_TYPE_SHORT || v->component_type == TINYGLTF_COMPONENT_TYPE_BYTE)
     return bad(what, "indices are unsigned integers of 8, 16 or 32 bits");
   std::vector<std::uint32_t> indices(v->count);
   for (std::size_t i = 0; i < v->count; ++i) {

@@ -49,7 +49,8 @@ class Reader {
 
   Scene read() {
     if (!model_.extensionsRequired.empty())
-      throw BadScene{"requires the extension " + model_.extensionsRequired.front() + ", which is not supported"};
+      throw BadScene{"requires the extension " + model_.extensionsRequired.front() +
+                     ", which is not supported"};
     read_textures();
     for (std::size_t i = 0; i < model_.materials.size(); ++i) scene_.materials.push_back(material(i));
     const Mat4f identity = Mat4f::Identity();
@@ -78,7 +79,8 @@ class Reader {
     for (std::size_t i = 0; i < model_.textures.size(); ++i) {
       const int source = model_.textures[i].source;
       if (source < 0 || static_cast<std::size_t>(source) >= model_.images.size())
-        throw BadScene{"texture " + std::to_string(i) + " names image " + std::to_string(source) + ", out of range"};
+        throw BadScene{"texture " + std::to_string(i) + " names image " + std::to_string(source) +
+                       ", out of range"};
       const tinygltf::Image& image = model_.images[static_cast<std::size_t>(source)];
       const auto bytes = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 4;
       if (image.width <= 0 || image.height <= 0 || image.component != 4 || image.bits != 8 ||
@@ -92,7 +94,8 @@ class Reader {
     if (info.index < 0) return -1;
     if (static_cast<std::size_t>(info.index) >= scene_.textures.size())
       throw BadScene{what + " names texture " + std::to_string(info.index) + ", out of range"};
-    if (info.texCoord != 0) throw BadScene{what + " uses TEXCOORD_" + std::to_string(info.texCoord) + ", only 0 is supported"};
+    if (info.texCoord != 0)
+      throw BadScene{what + " uses TEXCOORD_" + std::to_string(info.texCoord) + ", only 0 is supported"};
     return info.index;
   }
 
@@ -103,7 +106,8 @@ class Reader {
     Material m;
     if (pbr.baseColorFactor.size() != 4) throw BadScene{what + ": baseColorFactor must be four numbers"};
     for (int c = 0; c < 3; ++c)
-      m.base_color[c] = number(Value(pbr.baseColorFactor[static_cast<std::size_t>(c)]), what + ": baseColorFactor", 0, 1);
+      m.base_color[c] =
+          number(Value(pbr.baseColorFactor[static_cast<std::size_t>(c)]), what + ": baseColorFactor", 0, 1);
     m.metallic = number(Value(pbr.metallicFactor), what + ": metallicFactor", 0, 1);
     m.roughness = number(Value(pbr.roughnessFactor), what + ": roughnessFactor", 0, 1);
     m.base_color_texture = texture(pbr.baseColorTexture, what + ": baseColorTexture");
@@ -123,16 +127,20 @@ class Reader {
     if (!phong->IsObject()) throw BadScene{what + ": extras.phong must be an object"};
     m.model = Material::Model::phong;
     m.base_color = Rgb::Zero();
-    if (const Value* v = member(*phong, "diffuse")) m.base_color = colour(*v, what + ": extras.phong.diffuse");
-    if (const Value* v = member(*phong, "specular")) m.specular = colour(*v, what + ": extras.phong.specular");
-    if (const Value* v = member(*phong, "exponent")) m.exponent = number(*v, what + ": extras.phong.exponent", 0, 1e6);
+    if (const Value* v = member(*phong, "diffuse"))
+      m.base_color = colour(*v, what + ": extras.phong.diffuse");
+    if (const Value* v = member(*phong, "specular"))
+      m.specular = colour(*v, what + ": extras.phong.specular");
+    if (const Value* v = member(*phong, "exponent"))
+      m.exponent = number(*v, what + ": extras.phong.exponent", 0, 1e6);
     return true;
   }
 
   void visit(int index, const Mat4f& world_from_parent, bool casts, int depth) {
     if (index < 0 || static_cast<std::size_t>(index) >= model_.nodes.size())
       throw BadScene{"node " + std::to_string(index) + " is out of range"};
-    if (depth > kMaxDepth) throw BadScene{"nodes are nested deeper than " + std::to_string(kMaxDepth) + " or in a circle"};
+    if (depth > kMaxDepth)
+      throw BadScene{"nodes are nested deeper than " + std::to_string(kMaxDepth) + " or in a circle"};
     const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(index)];
     const std::string what = "node " + std::to_string(index);
     const Mat4f world_from_node = world_from_parent * transform(node, what);
@@ -149,7 +157,8 @@ class Reader {
 
   static Mat4f transform(const tinygltf::Node& node, const std::string& what) {
     const auto check = [&](const std::vector<double>& v, std::size_t n, const char* key) {
-      if (!v.empty() && v.size() != n) throw BadScene{what + ": " + key + " must be " + std::to_string(n) + " numbers"};
+      if (!v.empty() && v.size() != n)
+        throw BadScene{what + ": " + key + " must be " + std::to_string(n) + " numbers"};
     };
     check(node.matrix, 16, "matrix");
     check(node.translation, 3, "translation");
@@ -179,8 +188,10 @@ class Reader {
     camera.yfov_rad = number(Value(p.yfov), "camera '" + source.name + "': yfov", 1e-3, kPi - 1e-3);
     camera.near_m = number(Value(p.znear), "camera '" + source.name + "': znear", 1e-9, 1e9);
     if (p.zfar > 0) camera.far_m = static_cast<float>(p.zfar);
-    if (!(camera.far_m > camera.near_m)) throw BadScene{"camera '" + source.name + "': zfar must be beyond znear"};
-    if (p.aspectRatio != 0) camera.aspect = number(Value(p.aspectRatio), "camera '" + source.name + "': aspectRatio", 1e-3, 1e3);
+    if (!(camera.far_m > camera.near_m))
+      throw BadScene{"camera '" + source.name + "': zfar must be beyond znear"};
+    if (p.aspectRatio != 0)
+      camera.aspect = number(Value(p.aspectRatio), "camera '" + source.name + "': aspectRatio", 1e-3, 1e3);
     // A camera looks along its node's axes; scale does not zoom (glTF 2.0, 3.10.2).
     camera.world_from_camera = world_from_node;
     for (int c = 0; c < 3; ++c) {
@@ -191,7 +202,8 @@ class Reader {
     scene_.cameras.push_back(camera);
   }
 
-  void add_mesh(const tinygltf::Node& node, const Mat4f& world_from_node, bool casts, const std::string& what) {
+  void add_mesh(const tinygltf::Node& node, const Mat4f& world_from_node, bool casts,
+                const std::string& what) {
     if (static_cast<std::size_t>(node.mesh) >= model_.meshes.size())
       throw BadScene{what + ": mesh " + std::to_string(node.mesh) + " is out of range"};
     const tinygltf::Mesh& mesh = model_.meshes[static_cast<std::size_t>(node.mesh)];
@@ -209,8 +221,8 @@ class Reader {
   }
 
   // Its own copy of the material where the primitive, mesh or node carries extras.phong.
-  int primitive_material(const tinygltf::Node& node, const tinygltf::Mesh& mesh, const tinygltf::Primitive& source,
-                         const std::string& what) {
+  int primitive_material(const tinygltf::Node& node, const tinygltf::Mesh& mesh,
+                         const tinygltf::Primitive& source, const std::string& what) {
     Material m;
     if (source.material >= 0) {
       if (static_cast<std::size_t>(source.material) >= model_.materials.size())
@@ -240,14 +252,19 @@ class Reader {
     const auto positions = take(read_floats(model_, attribute("POSITION"), 3, what + " POSITION"));
     std::vector<float> normals;
     std::vector<float> uvs;
-    if (attribute("NORMAL") >= 0) normals = take(read_floats(model_, attribute("NORMAL"), 3, what + " NORMAL"));
-    if (attribute("TEXCOORD_0") >= 0) uvs = take(read_floats(model_, attribute("TEXCOORD_0"), 2, what + " TEXCOORD_0"));
+    if (attribute("NORMAL") >= 0)
+      normals = take(read_floats(model_, attribute("NORMAL"), 3, what + " NORMAL"));
+    if (attribute("TEXCOORD_0") >= 0)
+      uvs = take(read_floats(model_, attribute("TEXCOORD_0"), 2, what + " TEXCOORD_0"));
     const std::size_t count = positions.size() / 3;
-    if (!normals.empty() && normals.size() != 3 * count) throw BadScene{what + ": NORMAL and POSITION differ in count"};
-    if (!uvs.empty() && uvs.size() != 2 * count) throw BadScene{what + ": TEXCOORD_0 and POSITION differ in count"};
+    if (!normals.empty() && normals.size() != 3 * count)
+      throw BadScene{what + ": NORMAL and POSITION differ in count"};
+    if (!uvs.empty() && uvs.size() != 2 * count)
+      throw BadScene{what + ": TEXCOORD_0 and POSITION differ in count"};
 
     const Eigen::Matrix3f linear = world_from_node.topLeftCorner<3, 3>();
-    // The cofactor matrix carries normals: it is the inverse transpose times the determinant, and exists for any scale.
+    // The cofactor matrix carries normals: it is the inverse transpose times the determinant, and exists for
+    // any scale.
     Eigen::Matrix3f cofactor;
     cofactor << linear.col(1).cross(linear.col(2)), linear.col(2).cross(linear.col(0)),
         linear.col(0).cross(linear.col(1));
@@ -256,7 +273,8 @@ class Reader {
     std::vector<Vertex> vertices(count);
     for (std::size_t i = 0; i < count; ++i) {
       Vertex& v = vertices[i];
-      v.position = linear * Eigen::Map<const Vec3f>(&positions[3 * i]) + world_from_node.topRightCorner<3, 1>();
+      v.position =
+          linear * Eigen::Map<const Vec3f>(&positions[3 * i]) + world_from_node.topRightCorner<3, 1>();
       if (!v.position.allFinite()) throw BadScene{what + ": vertex " + std::to_string(i) + " is not finite"};
       v.normal = normals.empty() ? Vec3f::Zero() : Vec3f(cofactor * Eigen::Map<const Vec3f>(&normals[3 * i]));
       const float length = v.normal.norm();
@@ -332,7 +350,9 @@ std::string one_line(std::string text) {
 }  // namespace
 
 Result<Scene> read_gltf(const std::filesystem::path& file) {
-  const auto bad = [&](const std::string& why) { return Error{ErrorKind::bad_input, file.string() + ": " + why}; };
+  const auto bad = [&](const std::string& why) {
+    return Error{ErrorKind::bad_input, file.string() + ": " + why};
+  };
   const auto text = read_text_file(file);
   if (!text) return text.error();
   tinygltf::Model model;
@@ -343,10 +363,11 @@ Result<Scene> read_gltf(const std::filesystem::path& file) {
     const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
     const auto length = static_cast<unsigned int>(text->size());
     const bool binary = text->starts_with("glTF");
-    const bool read = binary ? loader.LoadBinaryFromMemory(&model, &error, &warning,
-                                                           reinterpret_cast<const unsigned char*>(text->data()), length,
-                                                           folder)
-                             : loader.LoadASCIIFromString(&model, &error, &warning, text->c_str(), length, folder);
+    const bool read =
+        binary ? loader.LoadBinaryFromMemory(&model, &error, &warning,
+                                             reinterpret_cast<const unsigned char*>(text->data()), length,
+                                             folder)
+               : loader.LoadASCIIFromString(&model, &error, &warning, text->c_str(), length, folder);
     if (!read || !error.empty()) return bad(one_line(error));
     return Reader(model).read();
   } catch (const BadScene& e) {

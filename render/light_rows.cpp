@@ -24,7 +24,7 @@ std::vector<LightRow> make_light_rows(std::span<const DirectionalLight> lights, 
     if (!(light.illuminance.maxCoeff() > 0)) continue;
     const Vec3f d = light.direction.normalized();
     const bool with_supports = casters.needs_supports(d);
-    Sphere sphere = with_supports ? casters.all : casters.objects;
+    Sphere sphere = with_supports ? casters.scene : casters.objects;
     if (!(sphere.radius > 0)) sphere.radius = 1;  // nothing casts: any map does
     const Vec3f u = (std::abs(d.y()) < 0.9f ? Vec3f::UnitY() : Vec3f::UnitX()).cross(d).normalized();
     const Vec3f v = d.cross(u);

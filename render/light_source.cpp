@@ -50,8 +50,7 @@ class LiveLights final : public LightSource {
       std::fprintf(stderr, "lightwell-render: waiting for light on DDS domain %d\n", domain_);
     if (now == State::flowing)
       std::fprintf(stderr, "lightwell-render: light from probe '%s'\n", reader_->probe().c_str());
-    if (now == State::stopped)
-      std::fprintf(stderr, "lightwell-render: no light for 2 s; keeping the last\n");
+    if (now == State::stopped) std::fprintf(stderr, "lightwell-render: no light for 2 s; keeping the last\n");
     told_ = now;
   }
 
@@ -69,8 +68,8 @@ class LiveLights final : public LightSource {
 }  // namespace
 
 std::unique_ptr<LightSource> fixed_lights(const LightSet& lights, int max_lights) {
-  return std::make_unique<FixedLights>(max_lights > 0 ? take_lights(lights, static_cast<std::size_t>(max_lights))
-                                                      : lights);
+  return std::make_unique<FixedLights>(
+      max_lights > 0 ? take_lights(lights, static_cast<std::size_t>(max_lights)) : lights);
 }
 
 Result<std::unique_ptr<LightSource>> live_lights(const LiveOptions& options) {
@@ -92,14 +91,17 @@ LatLongImage lat_long_from_polar(const PolarMap& map) {
   LatLongImage image;
   image.width = map.grid.sectors;
   image.height = std::max(1, static_cast<int>(std::lround(map.grid.rings * kPi / map.grid.theta_max_rad)));
-  image.pixels.assign(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height), Rgb::Zero());
+  image.pixels.assign(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height),
+                      Rgb::Zero());
   for (int y = 0; y < image.height; ++y) {
     const double theta = kPi * (y + 0.5) / image.height;
     if (theta >= map.grid.theta_max_rad) break;
-    const auto ring = std::min(static_cast<int>(theta / map.grid.theta_max_rad * map.grid.rings), map.grid.rings - 1);
+    const auto ring =
+        std::min(static_cast<int>(theta / map.grid.theta_max_rad * map.grid.rings), map.grid.rings - 1);
     for (int x = 0; x < image.width; ++x) {
       const Spherical s = spherical_from_direction(direction_from_lat_long((x + 0.5) / image.width, 0.5));
-      const auto sector = std::min(static_cast<int>(s.lambda_rad / (2 * kPi) * map.grid.sectors), map.grid.sectors - 1);
+      const auto sector =
+          std::min(static_cast<int>(s.lambda_rad / (2 * kPi) * map.grid.sectors), map.grid.sectors - 1);
       image.at(x, y) = map.rgb(static_cast<std::size_t>(ring) * static_cast<std::size_t>(map.grid.sectors) +
                                static_cast<std::size_t>(sector));
     }

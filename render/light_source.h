@@ -43,8 +43,8 @@ struct LiveOptions {
   int max_lights = 72;
   bool with_environment = false;
 };
-// Light as it is published. Says on stderr, once each time, that it waits, that the light stopped (the last one is
-// kept), that it came back. failed: the network.
+// Light as it is published. Says on stderr, once each time, that it waits, that the light stopped (the last
+// one is kept), that it came back. failed: the network.
 Result<std::unique_ptr<LightSource>> live_lights(const LiveOptions& options);
 
 // Nearest bins; what the map does not cover is black.

@@ -13,9 +13,12 @@ namespace {
 constexpr const char* kExample =
     "Example: lightwell-render --scene stage.gltf --light-set lights.json --headless --out relit.png\n"
     "\n"
-    "An EXR holds linear radiance in the light's own units, row 0 at the top, one sample at each pixel's centre; a PNG\n"
-    "what the tone mapping makes of it. Frame numbers start at 0; a name without a number holds the last frame.\n"
-    "Every light has a shadow: where there are more lights than --shadow-maps, the set is folded to that many first.\n"
+    "An EXR holds linear radiance in the light's own units, row 0 at the top, one sample at each pixel's "
+    "centre; a PNG\n"
+    "what the tone mapping makes of it. Frame numbers start at 0; a name without a number holds the last "
+    "frame.\n"
+    "Every light has a shadow: where there are more lights than --shadow-maps, the set is folded to that "
+    "many first.\n"
     "predicted_error in --stats is null: no light set carries a prediction.";
 
 // "640x480", each side 1 to 16384; the driver may allow less.
@@ -24,8 +27,8 @@ Result<std::pair<int, int>> parse_size(const std::string& text) {
   int height = 0;
   int used = 0;
   const int found = std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &used);
-  if (found != 2 || static_cast<std::size_t>(used) != text.size() || width < 1 || height < 1 || width > 16384 ||
-      height > 16384)
+  if (found != 2 || static_cast<std::size_t>(used) != text.size() || width < 1 || height < 1 ||
+      width > 16384 || height > 16384)
     return Error{ErrorKind::usage, "--size " + text + ": must be WIDTHxHEIGHT, each 1 to 16384"};
   return std::pair(width, height);
 }
@@ -43,26 +46,36 @@ Parsed parse_options(int argc, const char* const* argv) {
   std::string background = "none";
   std::string tone_map = "reinhard";
   std::vector<std::string> outputs;
-  CLI::App app{"Renders a scene under measured light, with its shadows: off-screen or in a window", "lightwell-render"};
+  CLI::App app{"Renders a scene under measured light, with its shadows: off-screen or in a window",
+               "lightwell-render"};
   app.footer(kExample);
   app.set_version_flag("--version", "lightwell 0.1.0");
   app.add_option("--scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
   auto* live = app.add_flag("--live", options.live, "light from a running daemon, over DDS");
   app.add_option("--domain", options.domain, "DDS domain of --live")->check(CLI::Range(0, 230))->needs(live);
-  app.add_option("--interface", options.interface, "network interface of --live")->capture_default_str()->needs(live);
+  app.add_option("--interface", options.interface, "network interface of --live")
+      ->capture_default_str()
+      ->needs(live);
   app.add_option("--light-set", options.light_set, "light from a lights.json")->excludes(live);
-  app.add_option("--shadow-maps", options.shadow_maps, "most lights to render, each with its map (default: all; live 72)")
+  app.add_option("--shadow-maps", options.shadow_maps,
+                 "most lights to render, each with its map (default: all; live 72)")
       ->check(CLI::Range(1, 100000));
   app.add_option("--shadow-size", options.shadow_size, "texels a side of a shadow map")
-      ->check(CLI::Range(16, 4096))->capture_default_str();
+      ->check(CLI::Range(16, 4096))
+      ->capture_default_str();
   app.add_option("--size", size, "picture, WxH")->capture_default_str();
-  app.add_option("--camera", options.camera, "camera of the scene, by its name or its node's (default: the first)");
+  app.add_option("--camera", options.camera,
+                 "camera of the scene, by its name or its node's (default: the first)");
   app.add_option("--samples", options.samples, "samples a pixel; 4 and more antialias")
-      ->check(CLI::Range(1, 1024))->capture_default_str();
-  app.add_option("--background", background, "behind the scene: none (black, alpha 0) or the measured environment")
-      ->check(CLI::IsMember({"none", "environment"}))->capture_default_str();
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  app.add_option("--background", background,
+                 "behind the scene: none (black, alpha 0) or the measured environment")
+      ->check(CLI::IsMember({"none", "environment"}))
+      ->capture_default_str();
   app.add_option("--tonemap", tone_map, "for window and PNG: reinhard, or none (clamped)")
-      ->check(CLI::IsMember({"reinhard", "none"}))->capture_default_str();
+      ->check(CLI::IsMember({"reinhard", "none"}))
+      ->capture_default_str();
   app.add_flag("--headless", options.headless, "no window");
   app.add_option("--frames", options.frames, "end after this many frames (off-screen default: 1, live: none)")
       ->check(CLI::Range(1, 1000000000));
@@ -87,7 +100,8 @@ Parsed parse_options(int argc, const char* const* argv) {
   }
   options.background_environment = background == "environment";
   if (options.background_environment && !options.live)
-    return {std::nullopt, complain("--background environment: a light set has no picture of its environment")};
+    return {std::nullopt,
+            complain("--background environment: a light set has no picture of its environment")};
   options.tone_map = tone_map == "none" ? ToneMap::none : ToneMap::reinhard;
   return {options, 0};
 }

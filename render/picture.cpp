@@ -13,7 +13,8 @@ namespace lightwell::render {
 namespace {
 
 // Encodes in memory, so that only a whole file ever reaches the disk.
-Status write(const std::filesystem::path& file, const char* format, const OIIO::ImageSpec& spec, const void* pixels) {
+Status write(const std::filesystem::path& file, const char* format, const OIIO::ImageSpec& spec,
+             const void* pixels) {
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
   const auto output = OIIO::ImageOutput::create(format, &memory);
@@ -21,7 +22,8 @@ Status write(const std::filesystem::path& file, const char* format, const OIIO::
     return Error{ErrorKind::failed,
                  file.string() + ": cannot encode: " + (output ? output->geterror() : OIIO::geterror())};
   };
-  if (!output || !output->open(file.string(), spec) || !output->write_image(spec.format, pixels) || !output->close())
+  if (!output || !output->open(file.string(), spec) || !output->write_image(spec.format, pixels) ||
+      !output->close())
     return failure();
   return write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }

@@ -10,7 +10,8 @@ namespace lightwell::render {
 namespace {
 
 double now_ms() {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
 }
 
 // Hammersley points, centred: one sample is the pixel's centre.
@@ -36,14 +37,16 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   if (!atlas) return atlas.error();
   auto tone_mapper = ToneMapper::create();
   if (!tone_mapper) return tone_mapper.error();
-  auto program = gl::make_program("fullscreen_vertex", "shade_fragment", "#define SHADOW_BIAS_TEXELS 1.4142136\n");
+  auto program =
+      gl::make_program("fullscreen_vertex", "shade_fragment", "#define SHADOW_BIAS_TEXELS 1.4142136\n");
   if (!program) return program.error();
   r.gbuffer_ = std::move(gbuffer).value();
   r.atlas_ = std::move(atlas).value();
   r.tone_mapper_ = std::move(tone_mapper).value();
   r.program_ = std::move(program).value();
   glUniformBlockBinding(r.program_.id(), glGetUniformBlockIndex(r.program_.id(), "Lights"), 0);
-  r.light_block_ = gl::make_buffer(GL_UNIFORM_BUFFER, nullptr, kMaxLightsPerBlock * sizeof(LightRow), GL_DYNAMIC_DRAW);
+  r.light_block_ =
+      gl::make_buffer(GL_UNIFORM_BUFFER, nullptr, kMaxLightsPerBlock * sizeof(LightRow), GL_DYNAMIC_DRAW);
   r.no_vertices_ = gl::make_vertex_array();
   r.environment_ = gl::make_texture(GL_RGBA32F, 1, 1);
   const int width = std::exchange(r.options_.width, 0);
@@ -110,7 +113,8 @@ Status Renderer::render(const LightSet& lights, const SceneCamera& camera, doubl
       if (Status s = atlas_.draw(block); !s) return s;
     time = lap(time, times_.shadow_ms);
     for (int sample = 0; sample < options_.samples; ++sample) {
-      const View view = make_view(camera, options_.width, options_.height, sample_offset(sample, options_.samples));
+      const View view =
+          make_view(camera, options_.width, options_.height, sample_offset(sample, options_.samples));
       // With one sample a pixel the G-buffer of the first block serves all blocks.
       if (first == 0 || options_.samples > 1) gbuffer_.draw(view);
       time = lap(time, times_.gbuffer_ms);
@@ -119,12 +123,13 @@ Status Renderer::render(const LightSet& lights, const SceneCamera& camera, doubl
       time = lap(time, times_.shading_ms);
     }
   }
-  if (glGetError() != GL_NO_ERROR) return Error{ErrorKind::failed, "the OpenGL ES driver failed (out of memory?)"};
+  if (glGetError() != GL_NO_ERROR)
+    return Error{ErrorKind::failed, "the OpenGL ES driver failed (out of memory?)"};
   return {};
 }
 
-void Renderer::shade(const View& view, std::span<const LightRow> rows, const LightSet& lights, bool first_block,
-                     bool start_sum, double environment_turn_rad) {
+void Renderer::shade(const View& view, std::span<const LightRow> rows, const LightSet& lights,
+                     bool first_block, bool start_sum, double environment_turn_rad) {
   const int earlier = current_;
   current_ = 1 - current_;
   glBindFramebuffer(GL_FRAMEBUFFER, sums_[current_].framebuffer.id());
@@ -133,16 +138,16 @@ void Renderer::shade(const View& view, std::span<const LightRow> rows, const Lig
   glUseProgram(program_.id());
   const auto integer = [&](const char* name, int value) { glUniform1i(gl::uniform(program_, name), value); };
   const auto real = [&](const char* name, float value) { glUniform1f(gl::uniform(program_, name), value); };
-  const auto vector = [&](const char* name, const float* value) { glUniform3fv(gl::uniform(program_, name), 1, value); };
+  const auto vector = [&](const char* name, const float* value) {
+    glUniform3fv(gl::uniform(program_, name), 1, value);
+  };
   const struct {
     const char* name;
     GLuint texture;
-  } maps[] = {{"shadow_maps", atlas_.texture()},
-              {"position_material_map", gbuffer_.position_material()},
-              {"surface_map", gbuffer_.surface()},
-              {"materials", gbuffer_.materials()},
-              {"so_far", sums_[earlier].texture.id()},
-              {"environment", environment_.id()}};
+  } maps[] = {
+      {"shadow_maps", atlas_.texture()},       {"position_material_map", gbuffer_.position_material()},
+      {"surface_map", gbuffer_.surface()},     {"materials", gbuffer_.materials()},
+      {"so_far", sums_[earlier].texture.id()}, {"environment", environment_.id()}};
   for (int unit = 0; unit < 6; ++unit) {
     gl::bind_texture(unit, maps[unit].texture);
     integer(maps[unit].name, unit);
@@ -186,7 +191,9 @@ RadiancePicture Renderer::radiance() const {
   return picture;
 }
 
-std::string Renderer::gl_renderer() { return reinterpret_cast<const char*>(glGetString(GL_RENDERER)); }
+std::string Renderer::gl_renderer() {
+  return reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+}
 
 int Renderer::size_limit() {
   GLint limit = 0;

@@ -19,8 +19,8 @@ namespace lightwell::render {
 struct RendererOptions {
   int width = 320;
   int height = 240;
-  int samples = 1;            // a pixel: 1 at its centre, more spread over it, averaged
-  int shadow_size = 256;      // texels a side of a light's map
+  int samples = 1;              // a pixel: 1 at its centre, more spread over it, averaged
+  int shadow_size = 256;        // texels a side of a light's map
   bool measure_passes = false;  // waits for each pass, to time it
 };
 
@@ -31,9 +31,9 @@ struct PassTimes {
   double tonemap_ms = 0;
 };
 
-// Deferred rendering of a scene under directional lights, all of them with shadow maps. Works in the context that is
-// current when it is created. Lights beyond what one uniform block or one atlas holds go in further passes: their number
-// is not limited.
+// Deferred rendering of a scene under directional lights, all of them with shadow maps. Works in the context
+// that is current when it is created. Lights beyond what one uniform block or one atlas holds go in further
+// passes: their number is not limited.
 class Renderer {
  public:
   // bad_input: a texture too large for the driver; failed: what the driver cannot do.
@@ -63,8 +63,8 @@ class Renderer {
     gl::Texture texture;
     gl::Framebuffer framebuffer;
   };
-  void shade(const View& view, std::span<const LightRow> rows, const LightSet& lights, bool first_block, bool start_sum,
-             double environment_turn_rad);
+  void shade(const View& view, std::span<const LightRow> rows, const LightSet& lights, bool first_block,
+             bool start_sum, double environment_turn_rad);
   // Adds the time since start to a pass, where passes are measured.
   double lap(double start, double& pass) const;
 

@@ -22,8 +22,8 @@ struct Vertex {
   Vec2f uv = Vec2f::Zero();
 };
 
-// Either the normalised Phong model of extras.phong, f = diffuse/π + specular (n+2)/(2π) max(0, R·L)ⁿ (Lambertian where
-// specular is 0), or glTF's metallic–roughness.
+// Either the normalised Phong model of extras.phong, f = diffuse/π + specular (n+2)/(2π) max(0, R·L)ⁿ
+// (Lambertian where specular is 0), or glTF's metallic–roughness.
 struct Material {
   enum class Model { metallic_roughness, phong } model = Model::metallic_roughness;
   Rgb base_color = Rgb::Constant(1);  // Phong: diffuse

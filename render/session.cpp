@@ -24,7 +24,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr int kLiveLights = 72;  // what two cores without a GPU draw several times a second
 
-void say(const std::string& line) { std::fprintf(stderr, "lightwell-render: %s\n", line.c_str()); }
+void say(const std::string& line) {
+  std::fprintf(stderr, "lightwell-render: %s\n", line.c_str());
+}
 
 double cpu_ms() {
   timespec t{};
@@ -32,7 +34,9 @@ double cpu_ms() {
   return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
 }
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 Result<SceneCamera> choose_camera(const Scene& scene, const Options& options) {
   if (options.camera.empty() && !scene.cameras.empty()) return scene.cameras.front();
@@ -40,7 +44,8 @@ Result<SceneCamera> choose_camera(const Scene& scene, const Options& options) {
     if (camera.name == options.camera || camera.node_name == options.camera) return camera;
   if (!options.camera.empty()) {
     std::string names;
-    for (const SceneCamera& camera : scene.cameras) names += (names.empty() ? "'" : ", '") + camera.name + "'";
+    for (const SceneCamera& camera : scene.cameras)
+      names += (names.empty() ? "'" : ", '") + camera.name + "'";
     return Error{ErrorKind::usage, "--camera " + options.camera + ": not in " + options.scene.string() +
                                        (names.empty() ? ", which has none" : ", which has " + names)};
   }
@@ -75,7 +80,9 @@ Status check_outputs(const Options& options) {
   return {};
 }
 
-bool has_display() { return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr; }
+bool has_display() {
+  return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
+}
 
 class Session {
  public:
@@ -154,7 +161,8 @@ class Session {
   }
 
   [[nodiscard]] bool over(std::optional<int> frames) const {
-    return stop_ || (frames && frame_ >= *frames) || (options_.seconds && seconds_since(start_) >= *options_.seconds);
+    return stop_ || (frames && frame_ >= *frames) ||
+           (options_.seconds && seconds_since(start_) >= *options_.seconds);
   }
 
   Status render(const SceneCamera& camera) {
@@ -181,8 +189,9 @@ class Session {
   Status write(int number, bool numbered) {
     for (const FrameName& name : options_.outputs) {
       if (name.numbered != numbered) continue;
-      const Status written = name.format == FrameName::Format::exr ? write_exr(name.file(number), renderer_->radiance())
-                                                                   : write_png(name.file(number), renderer_->display());
+      const Status written = name.format == FrameName::Format::exr
+                                 ? write_exr(name.file(number), renderer_->radiance())
+                                 : write_png(name.file(number), renderer_->display());
       if (!written) return written;
     }
     return {};
@@ -197,7 +206,8 @@ class Session {
 
   [[nodiscard]] std::string title(double fps) const {
     char text[160];
-    std::snprintf(text, sizeof text, "Lightwell – %.1f fps – %zu lights", fps, source_.lights().lights.size());
+    std::snprintf(text, sizeof text, "Lightwell – %.1f fps – %zu lights", fps,
+                  source_.lights().lights.size());
     std::string line = text;
     if (const auto age = source_.age()) {
       std::snprintf(text, sizeof text, " – light %.1f s old", std::chrono::duration<double>(*age).count());
@@ -227,7 +237,8 @@ Status run_session(const Options& options, const std::atomic<bool>& stop) {
   auto scene = read_gltf(options.scene);
   if (!scene) return scene.error();
   if (scene->dropped_triangles > 0)
-    say(options.scene.string() + ": " + std::to_string(scene->dropped_triangles) + " triangles of no area left out");
+    say(options.scene.string() + ": " + std::to_string(scene->dropped_triangles) +
+        " triangles of no area left out");
   auto camera = choose_camera(*scene, options);
   if (!camera) return camera.error();
   auto source = open_lights(options);
@@ -239,14 +250,16 @@ Status run_session(const Options& options, const std::atomic<bool>& stop) {
     if (Status s = session.prepare(); !s) return s;
     return window != nullptr ? session.run_window(*window) : session.run_off_screen();
   };
-  const bool has_purpose = !options.outputs.empty() || options.frames || options.seconds || !options.stats.empty();
+  const bool has_purpose =
+      !options.outputs.empty() || options.frames || options.seconds || !options.stats.empty();
   if (!options.headless && has_display()) {
     auto window = Window::open(options.width, options.height, Orbit(*camera, *scene));
     if (window) return run(window->get());
     if (!has_purpose) return window.error();
     say(window.error().message + "; rendering off-screen");
   } else if (!options.headless && !has_purpose) {
-    return Error{ErrorKind::failed, "no display for a window; --headless with --out, --frames or --seconds renders without"};
+    return Error{ErrorKind::failed,
+                 "no display for a window; --headless with --out, --frames or --seconds renders without"};
   }
   auto context = EglContext::create();
   if (!context) return context.error();

@@ -25,7 +25,8 @@ Result<ShadowAtlas> ShadowAtlas::create(const Casters& casters, int map_size) {
   glUniformBlockBinding(atlas.program_.id(), glGetUniformBlockIndex(atlas.program_.id(), "Lights"), 0);
   atlas.vertex_array_ = gl::make_vertex_array();
   glBindVertexArray(atlas.vertex_array_.id());
-  atlas.positions_ = gl::make_buffer(GL_ARRAY_BUFFER, casters.positions.data(), casters.positions.size() * sizeof(Vec3f));
+  atlas.positions_ =
+      gl::make_buffer(GL_ARRAY_BUFFER, casters.positions.data(), casters.positions.size() * sizeof(Vec3f));
   glEnableVertexAttribArray(0);
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vec3f), nullptr);
   atlas.indices_ = gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, casters.indices.data(),
@@ -65,23 +66,28 @@ Status ShadowAtlas::draw(std::span<const LightRow> rows) {
   glClear(GL_DEPTH_BUFFER_BIT);
   glUseProgram(program_.id());
   glUniform1i(gl::uniform(program_, "tiles"), tiles);
-  glUniform1i(gl::uniform(program_, "first_light"), 0);
+  const GLint support_light = gl::uniform(program_, "support_light");
+  glUniform1i(support_light, -1);
   glBindVertexArray(vertex_array_.id());
   const auto run = [&](GLsizei first_index, GLsizei indices, GLsizei instances) {
     if (indices == 0 || instances == 0) return;
     const auto offset = static_cast<std::uintptr_t>(first_index) * sizeof(std::uint32_t);
-    glDrawElementsInstanced(GL_TRIANGLES, indices, GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset), instances);
+    glDrawElementsInstanced(GL_TRIANGLES, indices, GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset),
+                            instances);
   };
-  // Of a closed mesh the side toward the light is the nearer one everywhere: the other half need not be drawn.
+  // Of a closed mesh the side toward the light is the nearer one everywhere: the other half need not be
+  // drawn.
   glEnable(GL_CULL_FACE);
   glCullFace(GL_BACK);
   run(0, closed_count_, count);
   glDisable(GL_CULL_FACE);
   run(closed_count_, open_count_, count);
-  const auto without = static_cast<GLsizei>(
-      std::count_if(rows.begin(), rows.end(), [](const LightRow& row) { return row.extent_m < 0; }));
-  glUniform1i(gl::uniform(program_, "first_light"), without);
-  run(closed_count_ + open_count_, support_count_, count - without);
+  for (int i = 0; i < count && support_count_ > 0; ++i) {
+    if (rows[static_cast<std::size_t>(i)].extent_m < 0) continue;
+    glViewport(i % tiles * map_size_, i / tiles * map_size_, map_size_, map_size_);
+    glUniform1i(support_light, i);
+    run(closed_count_ + open_count_, support_count_, 1);
+  }
   return {};
 }
 

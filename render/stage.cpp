@@ -33,7 +33,9 @@ struct Mesh {
   }
 };
 
-float turn(int i, int count) { return static_cast<float>(2 * kPi * (i % count) / count); }
+float turn(int i, int count) {
+  return static_cast<float>(2 * kPi * (i % count) / count);
+}
 
 Mesh ground(float half_side) {
   Mesh m;
@@ -125,7 +127,8 @@ Mesh railing() {
     const float x = -1.35f + 0.3f * static_cast<float>(i);
     add_bar(m, {x, 0, -0.95f}, {x, 0.9f, -0.95f}, 0.015f, 12);
   }
-  for (const float y : {0.2f, 0.4f, 0.6f, 0.8f}) add_bar(m, {-1.5f, y, -0.95f}, {1.5f, y, -0.95f}, 0.011f, 12);
+  for (const float y : {0.2f, 0.4f, 0.6f, 0.8f})
+    add_bar(m, {-1.5f, y, -0.95f}, {1.5f, y, -0.95f}, 0.011f, 12);
   return m;
 }
 
@@ -141,7 +144,8 @@ class Writer {
     root_["accessors"].back()["min"] = {low.x(), low.y(), low.z()};
     root_["accessors"].back()["max"] = {high.x(), high.y(), high.z()};
     const int normal = accessor(mesh.normals.data(), points * sizeof(Vec3f), points, "VEC3", 5126, 34962);
-    const int index = accessor(mesh.indices.data(), mesh.indices.size() * 4, mesh.indices.size(), "SCALAR", 5125, 34963);
+    const int index =
+        accessor(mesh.indices.data(), mesh.indices.size() * 4, mesh.indices.size(), "SCALAR", 5125, 34963);
     const json primitive = {{"attributes", {{"POSITION", position}, {"NORMAL", normal}}},
                             {"indices", index},
                             {"material", root_["materials"].size()}};
@@ -161,33 +165,42 @@ class Writer {
     root_["scenes"] = json::array({{{"nodes", nodes}}});
     root_["scene"] = 0;
     root_["buffers"] = json::array({{{"byteLength", bytes_.size()},
-                                     {"uri", "data:application/octet-stream;base64," + base64_encode(std::as_bytes(std::span(bytes_)))}}});
+                                     {"uri", "data:application/octet-stream;base64," +
+                                                 base64_encode(std::as_bytes(std::span(bytes_)))}}});
     return root_.dump();
   }
 
  private:
-  int accessor(const void* data, std::size_t bytes, std::size_t count, const char* type, int component, int target) {
+  int accessor(const void* data, std::size_t bytes, std::size_t count, const char* type, int component,
+               int target) {
     root_["bufferViews"].push_back(
         {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", bytes}, {"target", target}});
     root_["accessors"].push_back({{"bufferView", root_["bufferViews"].size() - 1},
-                                  {"componentType", component}, {"count", count}, {"type", type}});
+                                  {"componentType", component},
+                                  {"count", count},
+                                  {"type", type}});
     const auto* begin = static_cast<const unsigned char*>(data);
     bytes_.insert(bytes_.end(), begin, begin + bytes);
     return static_cast<int>(root_["accessors"].size()) - 1;
   }
 
   std::vector<unsigned char> bytes_;
-  json root_ = {{"bufferViews", json::array()}, {"accessors", json::array()}, {"materials", json::array()},
-                {"meshes", json::array()}, {"nodes", json::array()}};
+  json root_ = {{"bufferViews", json::array()},
+                {"accessors", json::array()},
+                {"materials", json::array()},
+                {"meshes", json::array()},
+                {"nodes", json::array()}};
 };
 
 json phong(const char* name, const Rgb& diffuse, const Rgb& specular, float exponent) {
   const auto list = [](const Rgb& c) { return json::array({c[0], c[1], c[2]}); };
   json base = list(diffuse);
   base.push_back(1);  // what other viewers show
-  return {{"name", name},
-          {"pbrMetallicRoughness", {{"baseColorFactor", base}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}}},
-          {"extras", {{"phong", {{"diffuse", list(diffuse)}, {"specular", list(specular)}, {"exponent", exponent}}}}}};
+  return {
+      {"name", name},
+      {"pbrMetallicRoughness", {{"baseColorFactor", base}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}}},
+      {"extras",
+       {{"phong", {{"diffuse", list(diffuse)}, {"specular", list(specular)}, {"exponent", exponent}}}}}};
 }
 
 }  // namespace
@@ -205,10 +218,13 @@ std::string stage_gltf() {
   writer.add("railing", railing(), phong("lacquer", {0.10f, 0.22f, 0.30f}, Rgb::Constant(0.05f), 30), true);
   // Looks from (0, 1.9, 4.6) slightly down at the group.
   const Eigen::Quaternionf rotation(Eigen::AngleAxisf(-0.26f, Vec3f::UnitX()));
-  return writer.finish(
-      {{"name", "stage"}, {"type", "perspective"}, {"perspective", {{"yfov", 0.58}, {"znear", 0.1}, {"zfar", 50.0}}}},
-      {{"name", "stage camera"}, {"camera", 0}, {"translation", {0.0, 1.75, 4.6}},
-       {"rotation", {rotation.x(), rotation.y(), rotation.z(), rotation.w()}}});
+  return writer.finish({{"name", "stage"},
+                        {"type", "perspective"},
+                        {"perspective", {{"yfov", 0.58}, {"znear", 0.1}, {"zfar", 50.0}}}},
+                       {{"name", "stage camera"},
+                        {"camera", 0},
+                        {"translation", {0.0, 1.75, 4.6}},
+                        {"rotation", {rotation.x(), rotation.y(), rotation.z(), rotation.w()}}});
 }
 
 }  // namespace lightwell::render

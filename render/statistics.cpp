@@ -25,7 +25,9 @@ nlohmann::json percentile(const std::vector<Statistics::Frame>& frames, double s
 
 std::string Statistics::json() const {
   using F = Frame;
-  const auto pass = [&](double PassTimes::*time) { return percentile(frames, 0.5, [=](const F& f) { return f.passes.*time; }); };
+  const auto pass = [&](double PassTimes::*time) {
+    return percentile(frames, 0.5, [=](const F& f) { return f.passes.*time; });
+  };
   const auto ms = [](const F& f) { return f.ms; };
   const nlohmann::ordered_json report = {
       {"frames", frames.size()},

@@ -8,11 +8,13 @@
 namespace lightwell::render {
 namespace {
 
-constexpr int kBlock = 64;        // pixels a side that one work group measures (measure_compute.glsl)
-constexpr double kKey = 0.18;     // middle grey (Reinhard et al. 2002, eq. 2)
-constexpr double kAdaptS = 0.4;   // time constant: fast enough to follow a walk, too slow to follow flicker
+constexpr int kBlock = 64;       // pixels a side that one work group measures (measure_compute.glsl)
+constexpr double kKey = 0.18;    // middle grey (Reinhard et al. 2002, eq. 2)
+constexpr double kAdaptS = 0.4;  // time constant: fast enough to follow a walk, too slow to follow flicker
 
-int blocks(int pixels) { return (pixels + kBlock - 1) / kBlock; }
+int blocks(int pixels) {
+  return (pixels + kBlock - 1) / kBlock;
+}
 
 }  // namespace
 
@@ -51,8 +53,8 @@ void ToneMapper::adapt(GLuint radiance, ToneMap operation, double dt_s) {
   glDispatchCompute(static_cast<GLuint>(blocks(width_)), static_cast<GLuint>(blocks(height_)), 1);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   const auto count = static_cast<std::size_t>(blocks(width_) * blocks(height_));
-  const auto* block = static_cast<const float*>(
-      glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(count * 4 * sizeof(float)), GL_MAP_READ_BIT));
+  const auto* block = static_cast<const float*>(glMapBufferRange(
+      GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(count * 4 * sizeof(float)), GL_MAP_READ_BIT));
   if (block == nullptr) return;
   double log_sum = 0;
   double lit = 0;
@@ -70,8 +72,12 @@ void ToneMapper::adapt(GLuint radiance, ToneMap operation, double dt_s) {
   adapted_ = true;
 }
 
-void ToneMapper::draw(GLuint radiance) { draw_into(framebuffer_.id(), radiance, true); }
-void ToneMapper::draw_to_window(GLuint radiance) const { draw_into(0, radiance, false); }
+void ToneMapper::draw(GLuint radiance) {
+  draw_into(framebuffer_.id(), radiance, true);
+}
+void ToneMapper::draw_to_window(GLuint radiance) const {
+  draw_into(0, radiance, false);
+}
 
 void ToneMapper::draw_into(GLuint framebuffer, GLuint radiance, bool straight_alpha) const {
   const double scale = adapted_ ? kKey / std::exp(log_average_) : 1;
@@ -91,7 +97,8 @@ void ToneMapper::draw_into(GLuint framebuffer, GLuint radiance, bool straight_al
 }
 
 DisplayPicture ToneMapper::read() const {
-  DisplayPicture picture{width_, height_, std::vector<std::uint8_t>(static_cast<std::size_t>(width_ * height_) * 4)};
+  DisplayPicture picture{width_, height_,
+                         std::vector<std::uint8_t>(static_cast<std::size_t>(width_ * height_) * 4)};
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, picture.rgba.data());

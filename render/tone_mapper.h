@@ -9,8 +9,9 @@ namespace lightwell::render {
 
 enum class ToneMap { none, reinhard };
 
-// Linear radiance to 8 bit sRGB. Reinhard's global operator (Reinhard et al. 2002, eqs. 1, 2 and 4) with its two
-// parameters, the log-average luminance and the white point, smoothed over time (Havran et al. 2005, section 4.4).
+// Linear radiance to 8 bit sRGB. Reinhard's global operator (Reinhard et al. 2002, eqs. 1, 2 and 4) with its
+// two parameters, the log-average luminance and the white point, smoothed over time (Havran et al. 2005,
+// section 4.4).
 class ToneMapper {
  public:
   static Result<ToneMapper> create();

@@ -10,7 +10,9 @@
 namespace lightwell::render {
 namespace {
 
-Window* owner(GLFWwindow* window) { return static_cast<Window*>(glfwGetWindowUserPointer(window)); }
+Window* owner(GLFWwindow* window) {
+  return static_cast<Window*>(glfwGetWindowUserPointer(window));
+}
 
 Error glfw_failure(const char* what) {
   const char* why = nullptr;
@@ -23,7 +25,8 @@ Error glfw_failure(const char* what) {
 Window::Window(GLFWwindow* window, Orbit orbit) : window_(window), orbit_(std::move(orbit)) {
   glfwSetWindowUserPointer(window, this);
   glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) {
-    if (action == GLFW_PRESS && (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q)) glfwSetWindowShouldClose(w, GLFW_TRUE);
+    if (action == GLFW_PRESS && (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q))
+      glfwSetWindowShouldClose(w, GLFW_TRUE);
   });
   glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
     Window& self = *owner(w);
@@ -69,12 +72,18 @@ Window::~Window() {
 }
 
 void Window::poll(double wait_s) {
-  if (wait_s > 0) glfwWaitEventsTimeout(wait_s);
-  else glfwPollEvents();
+  if (wait_s > 0)
+    glfwWaitEventsTimeout(wait_s);
+  else
+    glfwPollEvents();
 }
 
-void Window::show() { glfwSwapBuffers(window_); }
-bool Window::closed() const { return glfwWindowShouldClose(window_) != 0; }
+void Window::show() {
+  glfwSwapBuffers(window_);
+}
+bool Window::closed() const {
+  return glfwWindowShouldClose(window_) != 0;
+}
 
 std::pair<int, int> Window::size() const {
   int width = 0;
@@ -83,7 +92,9 @@ std::pair<int, int> Window::size() const {
   return {width, height};
 }
 
-bool Window::take_changed() { return std::exchange(changed_, false); }
+bool Window::take_changed() {
+  return std::exchange(changed_, false);
+}
 
 SceneCamera Window::camera() const {
   SceneCamera camera = orbit_.camera();
@@ -91,6 +102,8 @@ SceneCamera Window::camera() const {
   return camera;
 }
 
-void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+void Window::set_title(const std::string& title) {
+  glfwSetWindowTitle(window_, title.c_str());
+}
 
 }  // namespace lightwell::render

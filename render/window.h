@@ -12,8 +12,8 @@ struct GLFWwindow;
 
 namespace lightwell::render {
 
-// A window with an OpenGL ES 3.1 context, current on the calling thread. Dragging turns the camera, the wheel zooms,
-// Esc and q close. One at a time, on the main thread.
+// A window with an OpenGL ES 3.1 context, current on the calling thread. Dragging turns the camera, the wheel
+// zooms, Esc and q close. One at a time, on the main thread.
 class Window {
  public:
   // failed: no display, or none with OpenGL ES 3.1.

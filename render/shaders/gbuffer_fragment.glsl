@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The small G-buffer: position and material number (from 1; 0 is background), then the shading normal as an octahedral
 // pair of 16 bits, three halves of base colour from the texture and the roughness and metallic from theirs, and whether
-// the surface stands in the shadow maps (0 never, 1 always, 0.5 where the map holds the supports).
+// the surface stands in the shadow maps (0 no, 1 yes, 0.5 a support).
 in vec3 world_position;
 in vec3 world_normal;
 in vec2 texture_uv;

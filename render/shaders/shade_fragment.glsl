@@ -100,7 +100,9 @@ vec3 phong(Surface s, vec3 to_light) {
 // 1 lit, 0 in shadow, between them the hardware's 2×2 comparison. Outside its map everything is lit.
 float visibility(int i, vec3 position, Surface s, vec3 to_light, float cosine, float in_shadow_map) {
   float extent = abs(lights[i].illuminance.w);
-  bool stands_in_map = in_shadow_map > 0.75 || (in_shadow_map > 0.25 && lights[i].illuminance.w > 0.0);
+  // The side of a support that a light behind it sees: nothing of the scene is on that side.
+  if (in_shadow_map == 0.5 && lights[i].illuminance.w > 0.0) return 1.0;
+  bool stands_in_map = in_shadow_map == 1.0;
   // A 2×2 comparison reaches √2 texels away, where a plane at angle θ to the light is nearer by √2·texel·tan θ. Moving
   // the point by √2·texel·sin θ along its normal clears exactly that; the rest is for depth's 16 bits and curvature.
   float texel = extent / (map_size - 4.0);
