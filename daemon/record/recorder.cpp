@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/record/recorder.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "daemon/record/recording_session.h"
+
+namespace lightwell {
+
+RecordedFrame recorded_frame(const FrameInfo& info) {
+  return {.sequence = info.sequence,
+          .capture_mono_ns = info.capture_mono_ns,
+          .received_mono_ns = info.received_mono_ns,
+          .capture_utc_ns = info.capture_utc_ns,
+          .exposure_us = info.exposure_us,
+          .gain_db = info.gain_db,
+          .temperature_c = info.temperature_c};
+}
+
+Status check_take_name(const std::string& file) {
+  constexpr std::size_t kLongest = 200;  // leaves room within the 255 bytes of a file name
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  const bool plain =
+      std::none_of(file.begin(), file.end(), [&](char c) { return c == '/' || c == '\\' || control(c); });
+  if (plain && file.size() > 4 && file.size() <= kLongest && file.front() != '.' && file.ends_with(".mkv"))
+    return {};
+  std::string shown = file.substr(0, kLongest);
+  std::replace_if(shown.begin(), shown.end(), control, '?');
+  return Error{ErrorKind::usage,
+               "recording: file '" + shown +
+                   "' is not a plain name such as take.mkv (no folders, no leading dot, ends in "
+                   ".mkv, at most 200 bytes)"};
+}
+
+Recorder::Recorder(std::filesystem::path directory, std::size_t ring_bytes)
+    : directory_(std::move(directory)), ring_bytes_(ring_bytes) {}
+
+Recorder::~Recorder() = default;
+
+std::shared_ptr<Recorder::Session> Recorder::session() const {
+  const std::lock_guard lock(session_mutex_);
+  return session_;
+}
+
+Status Recorder::start(const std::string& file, const RecordingHeader& header) {
+  if (Status status = check_take_name(file); !status) return status;
+  const std::lock_guard one_at_a_time(control_);
+  auto previous = session();
+  if (previous && previous->active())
+    return Error{ErrorKind::usage, "recording: " + previous->file() + " is being written; stop it first"};
+  auto writer = RecordingWriter::create(directory_ / file, header);
+  if (!writer) return writer.error();
+  constexpr std::size_t kFewest = 4, kMost = 256;
+  const std::size_t frames = std::clamp(ring_bytes_ / header.format.bytes(), kFewest, kMost);
+  auto next = std::make_shared<Session>(file, header.format, frames, std::move(*writer));
+  {
+    const std::lock_guard lock(session_mutex_);
+    session_ = next;
+  }
+  const std::lock_guard lock(live_mutex_);
+  live_.swap(next);  // the last take's memory goes here, not on the frame path
+  return {};
+}
+
+Status Recorder::stop() {
+  const std::lock_guard one_at_a_time(control_);
+  const auto ending = session();
+  if (!ending) return Error{ErrorKind::usage, "recording: none is being written"};
+  return ending->finish();
+}
+
+void Recorder::offer(const FrameInfo& info, std::span<const std::byte> codes) noexcept {
+  if (!info.complete) return;
+  const std::unique_lock lock(live_mutex_, std::try_to_lock);
+  if (lock && live_) live_->offer(info, codes);
+}
+
+Recorder::Stats Recorder::stats() const {
+  const auto current = session();
+  return current ? current->stats() : Stats();
+}
+
+}  // namespace lightwell
