@@ -264,7 +264,7 @@ function draw() {
 function freshTakeName() {
   const two = (n) => String(n).padStart(2, '0');
   const d = new Date();
-  return `take_${d.getFullYear()}${two(d.getMonth() + 1)}${two(d.getDate())}_` +
+  return `${d.getFullYear()}${two(d.getMonth() + 1)}${two(d.getDate())}_` +
       `${two(d.getHours())}${two(d.getMinutes())}${two(d.getSeconds())}.mkv`;
 }
 
