@@ -7,6 +7,7 @@
 namespace lightwell::cli {
 
 Command add_filter(CLI::App& app);
+Command add_status(CLI::App& app);
 
 int fail(const Error& error) {
   std::fprintf(stderr, "lightwell: %s\n", error.message.c_str());
@@ -18,6 +19,7 @@ Error usage(std::string message) { return {ErrorKind::usage, std::move(message)}
 std::vector<Command> add_commands(CLI::App& app) {
   std::vector<Command> commands;
   commands.push_back(add_filter(app));
+  commands.push_back(add_status(app));
   return commands;
 }
 
