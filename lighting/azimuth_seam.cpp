@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 
 namespace lightwell {
 namespace {
@@ -26,10 +25,14 @@ double turns_between(double from, double to) {
 // 0 to 1.
 struct AzimuthSeam::NearEnergy {
   std::complex<double> m1, m2;
-  double at(double turns) const {
-    const auto e = std::polar(1.0, -2 * kPi * turns);
-    return 0.375 + 0.5 * (e * m1).real() + 0.125 * (e * e * m2).real();
+  // e = e^{−iλ}; written out, because C++'s complex product must care for infinities
+  [[nodiscard]] double at(const std::complex<double>& e) const {
+    const double c2 = e.real() * e.real() - e.imag() * e.imag();
+    const double s2 = 2 * e.real() * e.imag();
+    return 0.375 + 0.5 * (e.real() * m1.real() - e.imag() * m1.imag()) +
+           0.125 * (c2 * m2.real() - s2 * m2.imag());
   }
+  [[nodiscard]] double at(double turns) const { return at(std::polar(1.0, -2 * kPi * turns)); }
 };
 
 AzimuthSeam::AzimuthSeam(const PolarGrid& grid)
@@ -38,7 +41,15 @@ AzimuthSeam::AzimuthSeam(const PolarGrid& grid)
       shares_(static_cast<std::size_t>(grid.rings)),
       column_start_(
           static_cast<std::size_t>((grid.sectors + RingDistribution::kBlock - 1) / RingDistribution::kBlock) +
-          1) {}
+          1) {
+  for (std::size_t b = 0; b + 1 < column_start_.size(); ++b) {
+    const auto first = static_cast<double>(b * RingDistribution::kBlock);
+    const double last = std::min(first + RingDistribution::kBlock, static_cast<double>(grid.sectors));
+    block_azimuth_.push_back(std::polar(1.0, 2 * kPi * (first + last) / 2 / grid.sectors));
+  }
+  constexpr int kCandidates = 72;  // 5°, far finer than the kernel
+  for (int i = 0; i < kCandidates; ++i) candidates_.push_back(std::polar(1.0, -2 * kPi * i / kCandidates));
+}
 
 void AzimuthSeam::reset() noexcept {
   placed_ = false;
@@ -52,65 +63,63 @@ void AzimuthSeam::fix(const RingDistribution& map, double turns) noexcept {
   update_seam_power(map);
 }
 
-void AzimuthSeam::follow(const RingDistribution& map) noexcept {
-  const int blocks = map.blocks();
+AzimuthSeam::NearEnergy AzimuthSeam::near_energy(const RingDistribution& map) noexcept {
   std::fill(column_start_.begin(), column_start_.end(), 0.0);
   for (int ring = 0; ring < map.grid().rings; ++ring)
-    for (int b = 0; b <= blocks; ++b) column_start_[static_cast<std::size_t>(b)] += map.block_start(ring, b);
+    for (std::size_t b = 0; b < column_start_.size(); ++b)
+      column_start_[b] += map.block_start(ring, static_cast<int>(b));
+  NearEnergy near{};
+  for (std::size_t b = 0; b < block_azimuth_.size(); ++b) {
+    const std::complex<double> e = block_azimuth_[b];
+    const double share = (column_start_[b + 1] - column_start_[b]) / map.total_power();
+    near.m1 += share * e;
+    near.m2 +=
+        share * std::complex<double>(e.real() * e.real() - e.imag() * e.imag(), 2 * e.real() * e.imag());
+  }
+  return near;
+}
 
-  const double total = map.total_power();
-  if (total > 0) {
-    NearEnergy near{};
-    for (int b = 0; b < blocks; ++b) {
-      const auto i = static_cast<std::size_t>(b);
-      const double last = std::min((b + 1) * RingDistribution::kBlock, sectors_);
-      const double middle = (b * RingDistribution::kBlock + last) / 2 / sectors_;
-      const auto e = std::polar(1.0, 2 * kPi * middle);
-      const double share = (column_start_[i + 1] - column_start_[i]) / total;
-      near.m1 += share * e;
-      near.m2 += share * e * e;
-    }
-    constexpr int kSteps = 72;  // 5°, far finer than the kernel
+void AzimuthSeam::follow(const RingDistribution& map) noexcept {
+  if (map.total_power() > 0) {
+    const NearEnergy near = near_energy(map);
     double least = 2, most = 0, best = 0;
-    for (int i = 0; i < kSteps; ++i) {
-      const double x = static_cast<double>(i) / kSteps;
-      const double energy = near.at(x);
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      const double energy = near.at(candidates_[i]);
       most = std::max(most, energy);
       if (energy < least) {
         least = energy;
-        best = x;
+        best = static_cast<double>(i) / static_cast<double>(candidates_.size());
       }
     }
     constexpr double kFlat = 0.02;  // a map this even in azimuth gives the seam no reason to move
+    const double level = least + 0.25 * (most - least);
     if (!placed_) {
       turns_ = best;
       placed_ = true;
-    } else if (const double level = least + 0.25 * (most - least);
-               most - least > kFlat && near.at(turns_) > level) {
-      // The nearest place at the level, on either side; steps of half a degree, refined by bisection.
-      constexpr double kStep = 0.5 / 360;
-      constexpr int kSlide = 60;  // 30°
-      int reached = 0;
-      double side = 1;
-      for (int i = 1; i <= kSlide && reached == 0; ++i)
-        for (const double direction : {1.0, -1.0})
-          if (reached == 0 && near.at(turns_ + direction * i * kStep) <= level) {
-            reached = i;
-            side = direction;
-          }
-      if (reached == 0) {
-        jump(map, best);
-      } else {
-        double above = (reached - 1) * kStep, below = reached * kStep;
-        for (int i = 0; i < 30; ++i) {
-          const double middle = (above + below) / 2;
-          (near.at(turns_ + side * middle) <= level ? below : above) = middle;
-        }
-        turns_ = wrap_turns(turns_ + side * below);
-      }
+    } else if (most - least > kFlat && near.at(turns_) > level && !slide(near, level)) {
+      jump(map, best);
     }
   }
   update_seam_power(map);
+}
+
+// To the nearest place at the level, on either side; false where there is none within 30°.
+bool AzimuthSeam::slide(const NearEnergy& near, double level) noexcept {
+  constexpr double kStep = 0.5 / 360;
+  constexpr int kSteps = 60;
+  for (int i = 1; i <= kSteps; ++i) {
+    for (const double side : {1.0, -1.0}) {
+      if (near.at(turns_ + side * i * kStep) > level) continue;
+      double above = (i - 1) * kStep, below = i * kStep;
+      for (int halvings = 0; halvings < 30; ++halvings) {
+        const double middle = (above + below) / 2;
+        (near.at(turns_ + side * middle) <= level ? below : above) = middle;
+      }
+      turns_ = wrap_turns(turns_ + side * below);
+      return true;
+    }
+  }
+  return false;
 }
 
 void AzimuthSeam::jump(const RingDistribution& map, double turns) noexcept {
@@ -140,20 +149,6 @@ void AzimuthSeam::jump(const RingDistribution& map, double turns) noexcept {
 void AzimuthSeam::update_seam_power(const RingDistribution& map) noexcept {
   for (int ring = 0; ring < map.grid().rings; ++ring)
     seam_power_[static_cast<std::size_t>(ring)] = map.power_before(ring, turns_);
-}
-
-double AzimuthSeam::seam_power(const RingBlend& blend) const noexcept {
-  return blend.weight_a * seam_power_[static_cast<std::size_t>(blend.a)] +
-         blend.weight_b * seam_power_[static_cast<std::size_t>(blend.b)] + blend.uniform * turns_ * sectors_;
-}
-
-double AzimuthSeam::power_target(const RingDistribution& map, const RingBlend& blend,
-                                 double s) const noexcept {
-  double from_seam = s - offset_;
-  if (from_seam < 0) from_seam += 1;
-  const double power = map.power(blend);
-  const double target = seam_power(blend) + from_seam * power;
-  return target >= power ? target - power : target;
 }
 
 double AzimuthSeam::place(const RingDistribution& map, const RingBlend& blend,

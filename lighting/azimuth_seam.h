@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <complex>
 #include <vector>
 
 #include "lighting/ring_distribution.h"
@@ -41,15 +42,25 @@ class AzimuthSeam {
 
   // The light's place s to the ring blend's cumulative power from λ = 0, and back.
   [[nodiscard]] double power_target(const RingDistribution& map, const RingBlend& blend,
-                                    double s) const noexcept;
+                                    double s) const noexcept {
+    const double power = map.power(blend);
+    const double target = seam_power(blend) + (s < offset_ ? s - offset_ + 1 : s - offset_) * power;
+    return target >= power ? target - power : target;
+  }
   [[nodiscard]] double place(const RingDistribution& map, const RingBlend& blend,
                              double power_before) const noexcept;
 
  private:
   struct NearEnergy;  // the kernel's sums, as two harmonics
+  NearEnergy near_energy(const RingDistribution& map) noexcept;
+  bool slide(const NearEnergy& near, double level) noexcept;
   void jump(const RingDistribution& map, double turns) noexcept;
   void update_seam_power(const RingDistribution& map) noexcept;
-  [[nodiscard]] double seam_power(const RingBlend& blend) const noexcept;
+  [[nodiscard]] double seam_power(const RingBlend& blend) const noexcept {
+    return blend.weight_a * seam_power_[static_cast<std::size_t>(blend.a)] +
+           blend.weight_b * seam_power_[static_cast<std::size_t>(blend.b)] +
+           blend.uniform * turns_ * sectors_;
+  }
 
   bool placed_ = false;
   double turns_ = 0;
@@ -60,8 +71,10 @@ class AzimuthSeam {
     double share;  // of the ring's power between two seams
     double power;
   };
-  std::vector<Share> shares_;         // scratch of jump
-  std::vector<double> column_start_;  // [blocks + 1], scratch of follow
+  std::vector<Share> shares_;                        // scratch of jump
+  std::vector<double> column_start_;                 // [blocks + 1], scratch of follow
+  std::vector<std::complex<double>> block_azimuth_;  // [blocks], e^{iλ} of their middles
+  std::vector<std::complex<double>> candidates_;     // e^{−iλ} of the places a seam may first be put
 };
 
 }  // namespace lightwell

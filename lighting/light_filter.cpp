@@ -13,12 +13,6 @@ namespace {
 using Channel = std::vector<float> LightArrays::*;
 constexpr std::array<Channel, 3> kPower = {&LightArrays::r, &LightArrays::g, &LightArrays::b};
 
-double sum_of(const std::vector<float>& values) {
-  double sum = 0;
-  for (const float v : values) sum += static_cast<double>(v);
-  return sum;
-}
-
 void add_scaled(const std::vector<float>& in, float weight, std::vector<float>& sum) noexcept {
   const float* __restrict from = in.data();
   float* __restrict to = sum.data();
@@ -36,6 +30,15 @@ void widen_range(const std::vector<float>& in, std::vector<float>& least,
     lo[i] = std::min(lo[i], from[i]);
     hi[i] = std::max(hi[i], from[i]);
   }
+}
+
+void hold_to_range(const std::vector<float>& least, const std::vector<float>& largest,
+                   std::vector<float>& values) noexcept {
+  const float* __restrict lo = least.data();
+  const float* __restrict hi = largest.data();
+  float* __restrict v = values.data();
+  const std::size_t count = values.size();
+  for (std::size_t i = 0; i < count; ++i) v[i] = std::min(std::max(v[i], lo[i]), hi[i]);
 }
 
 }  // namespace
@@ -103,15 +106,16 @@ void LightFilter::filter_directions(LightArrays& out) noexcept {
     const float scale = 1 / std::max(length, kShortest);
     const float horizontal = std::sqrt(x[i] * x[i] + z[i] * z[i]);
     const bool below = y[i] * scale < edge_cosine;
-    // Straight down there is no azimuth to keep.
-    const bool keep = length < kShortest || (below && horizontal < 1e-6f);
-    const float to_edge = edge_sine / std::max(horizontal, 1e-6f);
-    const float nx = x[i] * (below ? to_edge : scale);
+    // Straight down there is no azimuth to keep. (No short circuits: the loop is to become vectors.)
+    const bool keep = (length < kShortest) | (below & (horizontal < 1e-6f));
+    const float flat_scale = below ? edge_sine / std::max(horizontal, 1e-6f) : scale;
+    const float nx = x[i] * flat_scale;
     const float ny = below ? edge_cosine : y[i] * scale;
-    const float nz = z[i] * (below ? to_edge : scale);
-    last_x[i] = x[i] = keep ? last_x[i] : nx;
-    last_y[i] = y[i] = keep ? last_y[i] : ny;
-    last_z[i] = z[i] = keep ? last_z[i] : nz;
+    const float nz = z[i] * flat_scale;
+    const float kx = last_x[i], ky = last_y[i], kz = last_z[i];
+    last_x[i] = x[i] = keep ? kx : nx;
+    last_y[i] = y[i] = keep ? ky : ny;
+    last_z[i] = z[i] = keep ? kz : nz;
   }
 }
 
@@ -132,7 +136,7 @@ void LightFilter::filter_power(int channel, std::vector<float>& out) noexcept {
     least_total = std::min(least_total, past_total);
     largest_total = std::max(largest_total, past_total);
   }
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = std::clamp(out[i], least_[i], largest_[i]);
+  hold_to_range(least_, largest_, out);
   total = std::clamp(total, least_total, largest_total);
   const double sum = sum_of(out);
   if (sum > 0) {

@@ -55,7 +55,7 @@ class RingDistribution {
   [[nodiscard]] const PolarGrid& grid() const { return grid_; }
   [[nodiscard]] double total_power() const { return ring_start_.back(); }  // luminance, lux
   [[nodiscard]] const Rgbd& total_illuminance() const { return total_rgb_; }
-  [[nodiscard]] double ring_power(int ring) const { return block_start_[block_index(ring, blocks_)]; }
+  [[nodiscard]] double ring_power(int ring) const { return ring_power_[static_cast<std::size_t>(ring)]; }
   // Power of the rings inside of this one.
   [[nodiscard]] double ring_start(int ring) const { return ring_start_[static_cast<std::size_t>(ring)]; }
   [[nodiscard]] double bin_power(int ring, int sector) const {
@@ -85,6 +85,13 @@ class RingDistribution {
   // Inverse of power_before: the sector where the blend's cumulative power reaches `target`, in [0,
   // power(blend)]. Always a sector with power, if there is one.
   [[nodiscard]] SectorPlace sector_at(const RingBlend& blend, double target) const noexcept;
+  // The same for kTogether at once: the searches run in step, so that none waits for its own loads alone.
+  static constexpr std::size_t kTogether = 4;
+  void rings_at(const std::array<double, kTogether>& t,
+                std::array<RingPlace, kTogether>& places) const noexcept;
+  void sectors_at(const std::array<RingBlend, kTogether>& blends,
+                  const std::array<double, kTogether>& targets,
+                  std::array<SectorPlace, kTogether>& places) const noexcept;
 
   // Zenith angle of a place as 1 − cos θ (exact near the zenith), and back.
   [[nodiscard]] double one_minus_cos(const RingPlace& place) const {
@@ -103,6 +110,12 @@ class RingDistribution {
     return static_cast<std::size_t>(ring) * static_cast<std::size_t>(blocks_ * kBlock) +
            static_cast<std::size_t>(sector);
   }
+  template <std::size_t kCount>
+  void find_rings(const double* t, RingPlace* places) const noexcept;
+  template <std::size_t kCount, bool kUniform>
+  void find_sectors(const RingBlend* blends, const double* targets, SectorPlace* places) const noexcept;
+  template <bool kUniform>
+  [[nodiscard]] SectorPlace find_in_block(const RingBlend& blend, int block, double rest) const noexcept;
   [[nodiscard]] SectorPlace last_sector_with_power(const RingBlend& blend, int from_sector) const noexcept;
 
   PolarGrid grid_;
@@ -110,6 +123,7 @@ class RingDistribution {
   std::vector<double> edge_;         // [rings + 1], 1 − cos θ
   std::vector<float> power_;         // [rings][blocks · kBlock], the last block padded with zeros
   std::vector<double> block_start_;  // [rings][blocks + 1]
+  std::vector<double> ring_power_;   // [rings]
   std::vector<double> ring_start_;   // [rings + 1]
   Rgbd total_rgb_ = Rgbd::Zero();
 };

@@ -115,10 +115,46 @@ Correction correction(double sum, double total, std::size_t count) noexcept {
 }
 
 void match_total(std::vector<float>& channel, double total) noexcept {
-  double sum = 0;
-  for (const float v : channel) sum += static_cast<double>(v);
-  const Correction c = correction(sum, total, channel.size());
+  const Correction c = correction(sum_of(channel), total, channel.size());
   for (float& v : channel) v = v * c.scale + c.rest;
+}
+
+// Steps of several lights side by side: where, then which azimuths, then which sectors.
+template <class BlendAt>
+void locate_together(const RingDistribution& map, const AzimuthSeam& seam, const RingCoordinates* c,
+                     BlendAt blend_at, MapPlaces& places) noexcept {
+  constexpr std::size_t kCount = RingDistribution::kTogether;
+  std::array<double, kCount> t, target;
+  std::array<RingPlace, kCount> rings;
+  std::array<RingBlend, kCount> blends;
+  std::array<SectorPlace, kCount> sectors;
+  for (std::size_t i = 0; i < kCount; ++i) t[i] = c[i].t;
+  if (map.total_power() > 0)
+    map.rings_at(t, rings);
+  else
+    for (std::size_t i = 0; i < kCount; ++i) rings[i] = ring_at(map, t[i]);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    blends[i] = blend_at(rings[i]);
+    target[i] = seam.power_target(map, blends[i], c[i].s);
+  }
+  map.sectors_at(blends, target, sectors);
+  for (std::size_t i = 0; i < kCount; ++i) places[i] = {rings[i], sectors[i], blends[i]};
+}
+
+// Colour of the place's bin at the given luminance. Light of the neighbouring ring that falls on a black bin
+// has the neighbour's colour; where both are black (the printed interpolation goes there), the map's mean.
+Rgb colour_at(const PolarMap& map, const MapPlace& place, const Rgb& mean, float power) noexcept {
+  const auto bin_in = [&](int ring) {
+    return static_cast<std::size_t>(ring) * static_cast<std::size_t>(map.grid.sectors) +
+           static_cast<std::size_t>(place.sector.sector);
+  };
+  Rgb colour = map.rgb(bin_in(place.ring.ring));
+  float y = luminance(colour);
+  if (y <= 0) {
+    colour = map.rgb(bin_in(place.blend.b));
+    y = luminance(colour);
+  }
+  return y > 0 ? Rgb(colour * (power / y)) : mean;
 }
 
 template <class Sampler>
@@ -126,37 +162,28 @@ void sample_lights_with(const Sampler& sampler, const PolarMap& radiance,
                         std::span<const RingCoordinates> points, LightArrays& lights) noexcept {
   verify_bug(lights.size() == points.size(), "one light a point");
   const RingDistribution& map = sampler.map();
-  const int sectors = map.grid().sectors;
-  const double sector_turns = 1.0 / sectors;
+  const double sector_turns = 1.0 / map.grid().sectors;
   const bool mono = radiance.channels == 1;
-  const float power = static_cast<float>(map.total_power() / static_cast<double>(points.size()));
-  const std::size_t plane = mono ? 0 : map.grid().size();
-  const float* red = radiance.radiance.data();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const MapPlace place = sampler.locate(points[i]);
+  const auto count = static_cast<double>(points.size());
+  const auto power = static_cast<float>(map.total_power() / count);
+  const Rgb mean = (map.total_illuminance() / count).cast<float>();
+  const auto put = [&](std::size_t i, const MapPlace& place) {
     lights.x[i] = static_cast<float>(map.one_minus_cos(place.ring));
     lights.y[i] = static_cast<float>((place.sector.sector + place.sector.fraction) * sector_turns);
-    if (mono) continue;
-    const auto sector = static_cast<std::size_t>(place.sector.sector);
-    const auto bin_in = [&](int ring) {
-      return static_cast<std::size_t>(ring) * static_cast<std::size_t>(sectors) + sector;
-    };
-    std::size_t bin = bin_in(place.ring.ring);
-    Rgb colour(red[bin], red[plane + bin], red[2 * plane + bin]);
-    if (luminance(colour) <= 0) {  // light of the neighbouring ring, in a black bin
-      bin = bin_in(place.blend.b);
-      colour = {red[bin], red[plane + bin], red[2 * plane + bin]};
-    }
-    const float y = luminance(colour);
-    // Black in both rings (the printed interpolation lands there): white.
-    if (y > 0)
-      colour *= power / y;
-    else
-      colour.setConstant(power);
+    if (mono) return;
+    const Rgb colour = colour_at(radiance, place, mean, power);
     lights.r[i] = colour[0];
     lights.g[i] = colour[1];
     lights.b[i] = colour[2];
+  };
+  constexpr std::size_t kTogether = RingDistribution::kTogether;
+  MapPlaces places;
+  std::size_t i = 0;
+  for (; i + kTogether <= points.size(); i += kTogether) {
+    sampler.locate(points.data() + i, places);
+    for (std::size_t k = 0; k < kTogether; ++k) put(i + k, places[k]);
   }
+  for (; i < points.size(); ++i) put(i, sampler.locate(points[i]));
   directions_from_places(lights);
   if (mono) {
     std::fill(lights.r.begin(), lights.r.end(), power);
@@ -171,11 +198,20 @@ void sample_lights_with(const Sampler& sampler, const PolarMap& radiance,
 
 }  // namespace
 
+RingBlend StandardInversion::blend_at(const RingPlace& place) const noexcept {
+  if (map_->ring_power(place.ring) <= 0) return even_blend(place.ring);
+  return {place.ring, place.ring, 1, 0, 0};
+}
+
 MapPlace StandardInversion::locate(const RingCoordinates& c) const noexcept {
   const RingPlace ring = ring_at(*map_, c.t);
-  RingBlend blend{ring.ring, ring.ring, 1, 0, 0};
-  if (map_->power(blend) <= 0) blend = even_blend(ring.ring);
+  const RingBlend blend = blend_at(ring);
   return {ring, map_->sector_at(blend, seam_->power_target(*map_, blend, c.s)), blend};
+}
+
+void StandardInversion::locate(const RingCoordinates* c, MapPlaces& places) const noexcept {
+  locate_together(
+      *map_, *seam_, c, [this](const RingPlace& ring) { return blend_at(ring); }, places);
 }
 
 Vec3d StandardInversion::sample(const Vec2d& square) const noexcept {
@@ -186,13 +222,12 @@ Vec3d StandardInversion::sample(const Vec2d& square) const noexcept {
 double StandardInversion::pdf(const Vec3d& direction) const noexcept {
   if (outside(*map_, direction)) return 0;
   const MapCoordinates at = map_coordinates(*map_, direction);
-  return density(*map_, at.ring, {at.ring.ring, at.ring.ring, 1, 0, 0}, at.turns);
+  return density(*map_, at.ring, blend_at(at.ring), at.turns);
 }
 
 Vec2d StandardInversion::invert(const Vec3d& direction) const noexcept {
   const MapCoordinates at = map_coordinates(*map_, direction);
-  RingBlend blend{at.ring.ring, at.ring.ring, 1, 0, 0};
-  if (map_->power(blend) <= 0) blend = even_blend(at.ring.ring);
+  const RingBlend blend = blend_at(at.ring);
   return {ring_coordinate(*map_, at.ring), seam_->place(*map_, blend, map_->power_before(blend, at.turns))};
 }
 
@@ -220,6 +255,11 @@ MapPlace HavranTransform::locate(const RingCoordinates& c) const noexcept {
   const RingPlace ring = ring_at(*map_, c.t);
   const RingBlend blend = blend_at(ring);
   return {ring, map_->sector_at(blend, seam_->power_target(*map_, blend, c.s)), blend};
+}
+
+void HavranTransform::locate(const RingCoordinates* c, MapPlaces& places) const noexcept {
+  locate_together(
+      *map_, *seam_, c, [this](const RingPlace& ring) { return blend_at(ring); }, places);
 }
 
 Vec3d HavranTransform::sample(const Vec2d& square) const noexcept {

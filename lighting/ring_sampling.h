@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,8 @@ struct MapPlace {
   RingBlend blend;
 };
 
+using MapPlaces = std::array<MapPlace, RingDistribution::kTogether>;
+
 // Row, then column. source: Pharr and Humphreys 2004; Havran et al. 2005, section 3.1
 class StandardInversion {
  public:
@@ -42,12 +45,15 @@ class StandardInversion {
 
   static RingCoordinates warp(const Vec2d& square) { return {square.x(), square.y()}; }
   [[nodiscard]] MapPlace locate(const RingCoordinates& c) const noexcept;
+  void locate(const RingCoordinates* c, MapPlaces& places) const noexcept;  // kTogether of them
   [[nodiscard]] Vec3d sample(const Vec2d& square) const noexcept;
   [[nodiscard]] double pdf(const Vec3d& direction) const noexcept;
   [[nodiscard]] Vec2d invert(const Vec3d& direction) const noexcept;
   [[nodiscard]] const RingDistribution& map() const { return *map_; }
 
  private:
+  [[nodiscard]] RingBlend blend_at(const RingPlace& place) const noexcept;
+
   const RingDistribution* map_;
   const AzimuthSeam* seam_;
 };
@@ -73,6 +79,7 @@ class HavranTransform {
     return {p.radius2, p.turns < 1 ? p.turns : 0};
   }
   [[nodiscard]] MapPlace locate(const RingCoordinates& c) const noexcept;
+  void locate(const RingCoordinates* c, MapPlaces& places) const noexcept;  // kTogether of them
   [[nodiscard]] Vec3d sample(const Vec2d& square) const noexcept;
   [[nodiscard]] double pdf(const Vec3d& direction) const noexcept;
   [[nodiscard]] Vec2d invert(const Vec3d& direction) const noexcept;
