@@ -10,6 +10,7 @@
 #include "daemon/capture/aravis_source.h"
 #include "daemon/capture/capture_source.h"
 #include "daemon/capture/recording_source.h"
+#include "daemon/capture/simulated_source.h"
 
 namespace lightwell {
 namespace {
@@ -29,6 +30,7 @@ struct Kind {
 constexpr std::array kKinds = {
     Kind{"aravis", "ADDRESS", make_aravis},
     Kind{"recording", "FILE", make_recording_source},
+    Kind{"simulated", "NAME", make_simulated_source},
 };
 
 std::string kinds() {
