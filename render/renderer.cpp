@@ -25,6 +25,16 @@ Vec2f sample_offset(int index, int count) {
   return {static_cast<float>((index + 0.5) / count - 0.5), static_cast<float>(reversed + half_step - 0.5)};
 }
 
+// Only the models that the scene's materials use are compiled.
+std::string shading_models(const Scene& scene) {
+  const auto uses = [&](Material::Model model) {
+    return std::any_of(scene.materials.begin(), scene.materials.end(),
+                       [=](const Material& m) { return m.model == model; });
+  };
+  return std::string("#define HAS_PHONG ") + (uses(Material::Model::phong) ? "1" : "0") +
+         "\n#define HAS_METALLIC_ROUGHNESS " + (uses(Material::Model::metallic_roughness) ? "1" : "0") + "\n";
+}
+
 }  // namespace
 
 Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& options) {
@@ -37,8 +47,7 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   if (!atlas) return atlas.error();
   auto tone_mapper = ToneMapper::create();
   if (!tone_mapper) return tone_mapper.error();
-  auto program =
-      gl::make_program("fullscreen_vertex", "shade_fragment", "#define SHADOW_BIAS_TEXELS 1.4142136\n");
+  auto program = gl::make_program("fullscreen_vertex", "shade_fragment", shading_models(scene));
   if (!program) return program.error();
   r.gbuffer_ = std::move(gbuffer).value();
   r.atlas_ = std::move(atlas).value();

@@ -97,8 +97,18 @@ vec3 phong(Surface s, vec3 to_light) {
   return s.diffuse / kPi + s.specular * ((s.exponent + 2.0) / (2.0 * kPi) * lobe);
 }
 
+vec3 reflectance(Surface s, vec3 to_light, float cosine) {
+#if HAS_PHONG && HAS_METALLIC_ROUGHNESS
+  return s.phong ? phong(s, to_light) : metallic_roughness(s, to_light, cosine);
+#elif HAS_PHONG
+  return phong(s, to_light);
+#else
+  return metallic_roughness(s, to_light, cosine);
+#endif
+}
+
 // 1 lit, 0 in shadow, between them the hardware's 2×2 comparison. Outside its map everything is lit.
-float visibility(int i, vec3 position, Surface s, vec3 to_light, float cosine, float in_shadow_map) {
+float visibility(int i, vec2 tile, vec3 position, Surface s, vec3 to_light, float cosine, float in_shadow_map) {
   float extent = abs(lights[i].illuminance.w);
   // The side of a support that a light behind it sees: nothing of the scene is on that side.
   if (in_shadow_map == 0.5 && lights[i].illuminance.w > 0.0) return 1.0;
@@ -106,11 +116,10 @@ float visibility(int i, vec3 position, Surface s, vec3 to_light, float cosine, f
   // A 2×2 comparison reaches √2 texels away, where a plane at angle θ to the light is nearer by √2·texel·tan θ. Moving
   // the point by √2·texel·sin θ along its normal clears exactly that; the rest is for depth's 16 bits and curvature.
   float texel = extent / (map_size - 4.0);
-  float bias = stands_in_map ? texel * (SHADOW_BIAS_TEXELS * sqrt(max(1.0 - cosine * cosine, 0.0)) + 0.1) : 0.0;
+  float bias = stands_in_map ? texel * (1.4142136 * sqrt(max(1.0 - cosine * cosine, 0.0)) + 0.1) : 0.0;
   vec4 p = vec4(position + s.normal * bias, 1.0);
   vec3 place = vec3(dot(lights[i].u, p), dot(lights[i].v, p), dot(lights[i].w, p));
   vec2 inside = clamp(place.xy, 0.5 / map_size, 1.0 - 0.5 / map_size);
-  vec2 tile = vec2(i % tiles, i / tiles);
   float lit = textureLod(shadow_maps, vec3((tile + inside) / float(tiles), min(place.z, 1.0)), 0.0);
   return inside == place.xy ? lit : 1.0;
 }
@@ -119,13 +128,15 @@ vec3 reflected(vec4 position_material, uvec4 packed_surface) {
   Surface s = unpack(position_material, packed_surface);
   float in_shadow_map = unpackHalf2x16(packed_surface.w).y;
   vec3 sum = vec3(0.0);
+  vec2 tile = vec2(-1.0, 0.0);
   for (int i = 0; i < light_count; ++i) {
+    tile = tile.x + 1.0 == float(tiles) ? vec2(0.0, tile.y + 1.0) : vec2(tile.x + 1.0, tile.y);
     vec3 to_light = lights[i].w.xyz * -abs(lights[i].illuminance.w);
     float cosine = dot(s.normal, to_light);
     if (cosine <= 0.0) continue;
     vec3 light = lights[i].illuminance.rgb * cosine;
-    if (has_shadows != 0) light *= visibility(i, position_material.xyz, s, to_light, cosine, in_shadow_map);
-    sum += light * (s.phong ? phong(s, to_light) : metallic_roughness(s, to_light, cosine));
+    if (has_shadows != 0) light *= visibility(i, tile, position_material.xyz, s, to_light, cosine, in_shadow_map);
+    sum += light * reflectance(s, to_light, cosine);
   }
   // Ambient light reaches every surface: albedo times radiance. A lobe's albedo is taken at normal incidence.
   if (first_block != 0) sum += (s.diffuse + s.specular) * ambient;
