@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "tests/support/allocation_counter.h"
 #include "tests/support/sampling_maps.h"
 
 namespace lightwell {
@@ -188,6 +189,26 @@ TEST(LightPipeline, RefusesWhatIsOutOfRangeAndNamesIt) {
   EXPECT_NE(message({}, {90, 0, 1}).find("sectors"), std::string::npos);
   EXPECT_NE(message({}, {90, 360, 4}).find("theta_max"), std::string::npos);
   EXPECT_NE(message({}, {}, 2).find("channels"), std::string::npos);
+}
+
+TEST(LightPipeline, ProcessAllocatesNothing) {
+  const PolarGrid grid{90, 360, kPi / 2};
+  // A sun that pushes the seam, a lamp that makes it jump, darkness.
+  std::vector<PolarMap> maps;
+  for (const double azimuth : {0.0, 60.0, 120.0, 125.0})
+    maps.push_back(test::sun_and_sky(grid, azimuth, 50, 0.8));
+  maps.push_back(test::sun_and_sky(grid, 300, 50, 0.9));
+  maps.push_back(PolarMap::make(grid, 3));
+  for (const Sampler sampler : {Sampler::havran, Sampler::standard}) {
+    LightPipelineOptions options;
+    options.sampler = sampler;
+    LightPipeline pipeline = make(maps[0], options);
+    const test::AllocationCounter counter;  // from the very first frame on
+    for (const PolarMap& map : maps) static_cast<void>(pipeline.process(map));
+    pipeline.reset();
+    static_cast<void>(pipeline.process(maps[0]));
+    EXPECT_EQ(counter.count(), 0u);
+  }
 }
 
 TEST(LightPipeline, DelayIsHalfTheOrderOrNone) {

@@ -14,15 +14,12 @@ namespace {
 
 // One invariant suite for every sampler: sample, pdf and invert belong together, on every hard map.
 struct Standard {
-  static constexpr const char* kName = "standard";
   static StandardInversion make(const RingDistribution& map, const AzimuthSeam& seam) { return {map, seam}; }
 };
 struct Havran {
-  static constexpr const char* kName = "havran";
   static HavranTransform make(const RingDistribution& map, const AzimuthSeam& seam) { return {map, seam}; }
 };
 struct Printed {
-  static constexpr const char* kName = "printed";
   static HavranTransform make(const RingDistribution& map, const AzimuthSeam& seam) {
     return {map, seam, HavranTransform::Interpolation::printed};
   }
