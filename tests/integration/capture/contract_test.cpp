@@ -31,6 +31,21 @@ struct AravisSubject {
 };
 INSTANTIATE_TYPED_TEST_SUITE_P(Aravis, CaptureContract, AravisSubject);
 
+CaptureOptions small(double rate_hz) {
+  CaptureOptions options;
+  options.width = 64;
+  options.height = 48;
+  options.rate_hz = rate_hz;
+  return options;
+}
+
+struct SimulatedSubject {
+  std::string missing() { return {}; }
+  std::unique_ptr<CaptureSource> make() { return made("simulated:studio", small(100)); }
+  std::unique_ptr<CaptureSource> make_silent() { return made("simulated:studio", small(0.01)); }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(Simulated, CaptureContract, SimulatedSubject);
+
 // A take at 100 Hz, played as recorded; silent is one of whose frames none is whole.
 struct RecordingSubject {
   TemporaryFolder folder;
