@@ -6,21 +6,28 @@
 
 namespace lightwell::cli {
 
-Command add_filter(CLI::App& app);
-Command add_status(CLI::App& app);
-
 int fail(const Error& error) {
   std::fprintf(stderr, "lightwell: %s\n", error.message.c_str());
   return static_cast<int>(error.kind);
 }
 
-Error usage(std::string message) { return {ErrorKind::usage, std::move(message)}; }
+Error usage(std::string message) {
+  return {ErrorKind::usage, std::move(message)};
+}
+
+// One a file, in the order in which --help lists them.
+Command add_devices(CLI::App& app);
+Command add_doctor(CLI::App& app);
+Command add_filter(CLI::App& app);
+Command add_status(CLI::App& app);
 
 std::vector<Command> add_commands(CLI::App& app) {
-  std::vector<Command> commands;
-  commands.push_back(add_filter(app));
-  commands.push_back(add_status(app));
-  return commands;
+  return {
+      add_devices(app),
+      add_doctor(app),
+      add_filter(app),
+      add_status(app),
+  };
 }
 
 }  // namespace lightwell::cli

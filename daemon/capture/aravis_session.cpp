@@ -22,27 +22,11 @@
 #include <vector>
 
 #include "daemon/capture/buffer_pool.h"
+#include "daemon/capture/glib_error.h"
+#include "daemon/capture/socket_buffer.h"
 
 namespace lightwell {
 namespace {
-
-// A GError that frees itself. Test the pointer, never the code: a wrong type has code 0.
-class GlibError {
- public:
-  GlibError() = default;
-  ~GlibError() { g_clear_error(&error_); }
-  GlibError(const GlibError&) = delete;
-  GlibError& operator=(const GlibError&) = delete;
-  GError** out() {
-    g_clear_error(&error_);
-    return &error_;
-  }
-  explicit operator bool() const { return error_ != nullptr; }
-  [[nodiscard]] const char* text() const { return error_ != nullptr ? error_->message : "no reason given"; }
-
- private:
-  GError* error_ = nullptr;
-};
 
 std::int64_t mono_now_ns() {
   timespec t{};
@@ -58,25 +42,6 @@ std::string number(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%g", value);
   return text.data();
-}
-
-// How much of a receive buffer the kernel grants: it caps a wish without a word.
-std::size_t granted_socket_buffer(int wish_bytes) {
-  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (fd < 0) return 0;
-  int granted = 0;
-  socklen_t size = sizeof granted;
-  static_cast<void>(::setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &wish_bytes, sizeof wish_bytes));
-  static_cast<void>(::getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &size));
-  ::close(fd);
-  return static_cast<std::size_t>(granted) / 2;  // the kernel doubles what it is asked for, socket(7)
-}
-
-// With CAP_NET_RAW Aravis reads the frames past the socket, from a ring of its own.
-bool has_packet_socket() {
-  const int fd = ::socket(AF_PACKET, SOCK_RAW | SOCK_CLOEXEC, 0);
-  if (fd >= 0) ::close(fd);
-  return fd >= 0;
 }
 
 // Largest IP packet of the interface that has this address, 0 where it is not found.
@@ -121,13 +86,6 @@ std::string supported_formats() {
 }
 
 }  // namespace
-
-std::string socket_buffer_remark(std::size_t frame_bytes, std::size_t granted_bytes) {
-  if (granted_bytes >= frame_bytes) return {};
-  return "receive buffer of " + std::to_string(granted_bytes) + " bytes is smaller than a frame of " +
-         std::to_string(frame_bytes) + ", frames will be incomplete: sysctl -w net.core.rmem_max=" +
-         std::to_string(std::max<std::size_t>(2 * frame_bytes, 16U << 20));
-}
 
 struct AravisSession::Handles {
   AravisSession* session = nullptr;

@@ -87,8 +87,4 @@ class AravisSession {
   std::unique_ptr<Handles> handles_;
 };
 
-// The line that says a frame does not fit the socket's receive buffer; empty where it fits. granted_bytes:
-// what the kernel gave of the wish (net.core.rmem_max caps it silently).
-std::string socket_buffer_remark(std::size_t frame_bytes, std::size_t granted_bytes);
-
 }  // namespace lightwell

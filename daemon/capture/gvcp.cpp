@@ -128,12 +128,15 @@ std::optional<std::vector<std::byte>> ask(const std::string& address, std::span<
 }
 
 // One bound socket an interface address, with the question already sent.
-std::vector<Socket> ask_everywhere() {
+std::vector<Socket> ask_on(const std::vector<std::string>& interfaces) {
   std::vector<Socket> sockets;
   ifaddrs* list = nullptr;
   if (::getifaddrs(&list) != 0) return sockets;
   for (const ifaddrs* it = list; it != nullptr; it = it->ifa_next) {
     if (it->ifa_addr == nullptr || it->ifa_addr->sa_family != AF_INET || (it->ifa_flags & IFF_UP) == 0)
+      continue;
+    if (!interfaces.empty() &&
+        std::find(interfaces.begin(), interfaces.end(), it->ifa_name) == interfaces.end())
       continue;
     sockaddr_in from{};
     std::memcpy(&from, it->ifa_addr, sizeof from);
@@ -205,9 +208,10 @@ std::optional<std::uint32_t> gvcp_read_register(const std::string& address, std:
   return get32(packet->data() + kHeader);
 }
 
-std::vector<GvcpDevice> gvcp_discover(std::chrono::milliseconds timeout) {
+std::vector<GvcpDevice> gvcp_discover(std::chrono::milliseconds timeout,
+                                      const std::vector<std::string>& interfaces) {
   std::vector<GvcpDevice> devices;
-  const auto sockets = ask_everywhere();
+  const auto sockets = ask_on(interfaces);
   const auto deadline = Clock::now() + timeout;
   std::array<std::byte, 2048> buffer;
   for (;;) {

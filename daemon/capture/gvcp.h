@@ -33,7 +33,8 @@ inline constexpr std::uint32_t kGvcpControlPrivilege =
 std::optional<GvcpDevice> gvcp_probe(const std::string& address, std::chrono::milliseconds timeout);
 // Asks on every interface that is up, by broadcast; on the loopback interface by its addresses. Sorted by
 // address.
-std::vector<GvcpDevice> gvcp_discover(std::chrono::milliseconds timeout);
+std::vector<GvcpDevice> gvcp_discover(std::chrono::milliseconds timeout,
+                                      const std::vector<std::string>& interfaces = {});
 std::optional<std::uint32_t> gvcp_read_register(const std::string& address, std::uint32_t reg,
                                                 std::chrono::milliseconds timeout);
 // The device in a DISCOVERY acknowledgement, nullopt where the bytes are anything else.

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "daemon/capture/aravis_session.h"
 #include "daemon/capture/capture_source.h"
+#include "daemon/capture/socket_buffer.h"
 
 namespace lightwell {
 namespace {
