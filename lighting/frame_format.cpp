@@ -26,11 +26,15 @@ constexpr std::array<Row, 8> kFormats = {{
     {PixelFormat::bayer_rg16, "BayerRG16", 16, 16, true},
 }};
 
-const Row& row(PixelFormat format) { return kFormats[static_cast<std::size_t>(format)]; }
+const Row& row(PixelFormat format) {
+  return kFormats[static_cast<std::size_t>(format)];
+}
 
 }  // namespace
 
-std::string_view name(PixelFormat format) { return row(format).name; }
+std::string_view name(PixelFormat format) {
+  return row(format).name;
+}
 
 std::optional<PixelFormat> pixel_format_from_name(std::string_view name) {
   for (const Row& r : kFormats)
@@ -38,8 +42,14 @@ std::optional<PixelFormat> pixel_format_from_name(std::string_view name) {
   return std::nullopt;
 }
 
-int significant_bits(PixelFormat format) { return row(format).significant_bits; }
-int storage_bits(PixelFormat format) { return row(format).storage_bits; }
-bool is_bayer(PixelFormat format) { return row(format).bayer; }
+int significant_bits(PixelFormat format) {
+  return row(format).significant_bits;
+}
+int storage_bits(PixelFormat format) {
+  return row(format).storage_bits;
+}
+bool is_bayer(PixelFormat format) {
+  return row(format).bayer;
+}
 
 }  // namespace lightwell

@@ -46,10 +46,13 @@ struct PolarMap {
   PolarGrid grid;
   int channels = 1;                    // 1: monochrome, meaning R = G = B; 3: linear Rec. 709
   std::vector<float> radiance;         // [channels][rings][sectors], cd/m², finite and ≥ 0
-  std::vector<float> peak;             // [channels][rings][sectors], largest pixel radiance of the bin
+  // [channels][rings][sectors], largest pixel radiance of the bin, never below its mean. A pixel smaller than the bin's
+  // largest counts in proportion: within 1 % inside the field, less for pixels that its border cuts. In colour, the
+  // channels' own peaks through the camera's matrix.
+  std::vector<float> peak;
   std::vector<float> solid_angle_sr;   // [rings][sectors], ≥ 0; the same for every frame of a camera
   std::vector<std::uint16_t> clipped;  // [rings][sectors], pixels of the bin at the top code
-  std::uint32_t clipped_pixels = 0;    // over the frame
+  std::uint32_t clipped_pixels = 0;    // over the field: the sum of clipped
   float coverage = 1;                  // measured part of the sphere, 0 to 1 (a full hemisphere is 0.5)
 
   // Allocates all planes, zero; solid_angle_sr is the grid's exact one, coverage the grid's.
