@@ -20,9 +20,9 @@ constexpr int kMeansRounds = 12;
 // Most of the way is gone on merged atoms: the same places to the map's own accuracy, five times faster.
 constexpr Eigen::Index kLeastCoarseAtoms = 700;
 constexpr Eigen::Index kCoarseAtomsPerLight = 12;
-constexpr int kStartSteps = 40;   // each start, on merged atoms
-constexpr int kCoarseSteps = 60;  // the better one, on merged atoms
-constexpr int kFineSteps = 20;    // on all atoms
+constexpr int kStartSteps = 40;          // each start, on merged atoms
+constexpr int kCoarseSteps = 60;         // the better one, on merged atoms
+constexpr int kFineSteps = 20;           // on all atoms
 constexpr double kBrightExponent = 1.6;  // of radiance, for the start that is drawn to what is bright
 
 // Spherical k-means (Lloyd) on weighted atoms; a light that no atom is nearest to goes where an atom is

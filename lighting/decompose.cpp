@@ -3,17 +3,42 @@
 #include "lighting/decompose.h"
 
 #include <limits>
+#include <vector>
 
 #include "lighting/best_lights.h"
 #include "lighting/median_cut.h"
 #include "lighting/uniform_lights.h"
 
 namespace lightwell {
+namespace {
+
+// One frame of the daemon's sampler: no filter, no clustering.
+Result<std::vector<DirectionalLight>> sampled_lights(const PolarMap& map,
+                                                     LightPipelineOptions::Sampler sampler, int count,
+                                                     std::uint32_t seed) {
+  LightPipelineOptions options;
+  options.count = count;
+  options.sampler = sampler;
+  options.relaxed = sampler == LightPipelineOptions::Sampler::havran;
+  options.seed = seed;
+  options.filter = TemporalFilter::none;
+  options.clusters = 0;
+  auto pipeline = LightPipeline::create(map.grid, map.channels, options);
+  if (!pipeline) return pipeline.error();
+  const auto lights = pipeline->process(map);
+  return std::vector<DirectionalLight>(lights.begin(), lights.end());
+}
+
+}  // namespace
 
 std::string_view name(Method method) {
   switch (method) {
     case Method::best:
       return "best";
+    case Method::standard:
+      return "standard";
+    case Method::havran:
+      return "havran";
     case Method::median_cut:
       return "median-cut";
     case Method::uniform:
@@ -38,6 +63,12 @@ Coverage coverage_of(const PolarGrid& grid) {
   return grid.theta_max_rad > 0.75 * kPi ? Coverage::sphere : Coverage::hemisphere;
 }
 
+std::optional<LightPipelineOptions::Sampler> sampler_of(Method method) {
+  if (method == Method::standard) return LightPipelineOptions::Sampler::standard;
+  if (method == Method::havran) return LightPipelineOptions::Sampler::havran;
+  return std::nullopt;
+}
+
 Result<LightSet> decompose(const PolarMap& map, Method method, int count, std::uint32_t seed) {
   if (count < 1 || count > kMostLights)
     return Error{ErrorKind::usage,
@@ -59,6 +90,13 @@ Result<LightSet> decompose(const PolarMap& map, Method method, int count, std::u
     case Method::uniform:
       set.lights = uniform_lights(map, count, seed);
       break;
+    case Method::standard:
+    case Method::havran: {
+      auto lights = sampled_lights(map, *sampler_of(method), count, seed);
+      if (!lights) return lights.error();
+      set.lights = std::move(lights).value();
+      break;
+    }
   }
   set.has_parents = method == Method::best || method == Method::median_cut;
   return set;
