@@ -18,11 +18,15 @@ Error usage(std::string message) {
 // One a file, in the order in which --help lists them.
 Command add_devices(CLI::App& app);
 Command add_doctor(CLI::App& app);
+Command add_evaluate(CLI::App& app);
 Command add_filter(CLI::App& app);
+Command add_lights(CLI::App& app);
 Command add_status(CLI::App& app);
 
 std::vector<Command> add_commands(CLI::App& app) {
   return {
+      add_lights(app),
+      add_evaluate(app),
       add_devices(app),
       add_doctor(app),
       add_filter(app),

@@ -10,7 +10,9 @@ int main(int argc, char** argv) {
   CLI::App app{"Lightwell: measure the light on set, relight virtual objects with it", "lightwell"};
   app.require_subcommand(1);
   app.set_version_flag("--version", "lightwell 0.1.0");
-  app.failure_message(CLI::FailureMessage::simple);
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return std::string("lightwell: ") + error.what() + "\n";
+  });
   const auto commands = lightwell::cli::add_commands(app);
   try {
     app.parse(argc, argv);

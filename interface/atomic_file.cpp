@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 namespace lightwell {
 namespace {
@@ -28,22 +29,50 @@ bool write_all(int fd, std::string_view content) {
 
 }  // namespace
 
-Status write_file_atomically(const std::filesystem::path& file, std::string_view content) {
+AtomicFileWriter::AtomicFileWriter(std::filesystem::path file, std::string temporary, int fd)
+    : file_(std::move(file)), temporary_(std::move(temporary)), fd_(fd) {}
+
+AtomicFileWriter::AtomicFileWriter(AtomicFileWriter&& other) noexcept
+    : file_(std::move(other.file_)),
+      temporary_(std::move(other.temporary_)),
+      fd_(std::exchange(other.fd_, -1)) {}
+
+AtomicFileWriter::~AtomicFileWriter() {
+  if (fd_ < 0) return;
+  ::close(fd_);
+  ::unlink(temporary_.c_str());
+}
+
+Result<AtomicFileWriter> AtomicFileWriter::create(const std::filesystem::path& file) {
   std::string temporary = file.string() + ".XXXXXX";
   const int fd = ::mkostemp(temporary.data(), O_CLOEXEC);
   if (fd < 0) return failure(file, "cannot write");
-  const bool written = write_all(fd, content) && ::fchmod(fd, 0644) == 0 && ::fsync(fd) == 0;
-  const int write_errno = errno;
-  const bool closed = ::close(fd) == 0;
-  if (written && closed && ::rename(temporary.c_str(), file.c_str()) == 0) return {};
-  if (!written) errno = write_errno;
-  const Error error = failure(file, "cannot write");
-  ::unlink(temporary.c_str());
-  return error;
+  return AtomicFileWriter(file, std::move(temporary), fd);
+}
+
+Status AtomicFileWriter::append(std::string_view content) {
+  if (!write_all(fd_, content)) return failure(file_, "cannot write");
+  return {};
+}
+
+Status AtomicFileWriter::commit() {
+  if (::fchmod(fd_, 0644) != 0 || ::fsync(fd_) != 0) return failure(file_, "cannot write");
+  if (::rename(temporary_.c_str(), file_.c_str()) != 0) return failure(file_, "cannot write");
+  ::close(std::exchange(fd_, -1));  // what was synced is safe whatever close says
+  return {};
+}
+
+Status write_file_atomically(const std::filesystem::path& file, std::string_view content) {
+  auto writer = AtomicFileWriter::create(file);
+  if (!writer) return writer.error();
+  if (Status status = writer->append(content); !status) return status;
+  return writer->commit();
 }
 
 Result<std::string> read_text_file(const std::filesystem::path& file, std::size_t limit_bytes) {
-  const auto bad = [&](const std::string& what) { return Error{ErrorKind::bad_input, file.string() + ": " + what}; };
+  const auto bad = [&](const std::string& what) {
+    return Error{ErrorKind::bad_input, file.string() + ": " + what};
+  };
   const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return bad(std::string("cannot read: ") + std::strerror(errno));
   std::string text;

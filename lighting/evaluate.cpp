@@ -30,17 +30,18 @@ class RingSums {
     }
   };
 
-  RingSums(const PolarMap& map, int ring) : sectors_(map.grid.sectors) {
+  // azimuths: sine and cosine of every sector's centre
+  RingSums(const PolarMap& map, int ring, const std::vector<Vec2d>& azimuths) : sectors_(map.grid.sectors) {
     const double theta = map.grid.theta_max_rad * (ring + 0.5) / map.grid.rings;
     sin_theta = std::sin(theta);
     cos_theta = std::cos(theta);
+    sums_.reserve(azimuths.size() + 1);
     sums_.emplace_back();
-    for (int sector = 0; sector < sectors_; ++sector) {
-      const std::size_t bin = static_cast<std::size_t>(ring) * static_cast<std::size_t>(sectors_) +
-                              static_cast<std::size_t>(sector);
+    std::size_t bin = static_cast<std::size_t>(ring) * azimuths.size();
+    for (const Vec2d& azimuth : azimuths) {
       const Rgbd flux = map.rgb(bin).cast<double>() * static_cast<double>(map.solid_angle_sr[bin]);
-      const double lambda = 2 * kPi * (sector + 0.5) / sectors_;
-      sums_.push_back(sums_.back() + Sum{flux, flux * std::sin(lambda), flux * std::cos(lambda)});
+      sums_.push_back(sums_.back() + Sum{flux, flux * azimuth[0], flux * azimuth[1]});
+      ++bin;
     }
   }
 
@@ -70,8 +71,13 @@ class RingSums {
 };
 
 std::vector<RingSums> ring_sums(const PolarMap& map) {
+  std::vector<Vec2d> azimuths;
+  for (int sector = 0; sector < map.grid.sectors; ++sector) {
+    const double lambda = 2 * kPi * (sector + 0.5) / map.grid.sectors;
+    azimuths.emplace_back(std::sin(lambda), std::cos(lambda));
+  }
   std::vector<RingSums> rings;
-  for (int ring = 0; ring < map.grid.rings; ++ring) rings.emplace_back(map, ring);
+  for (int ring = 0; ring < map.grid.rings; ++ring) rings.emplace_back(map, ring, azimuths);
   return rings;
 }
 
@@ -117,6 +123,18 @@ Rgbd shadow_of_map(const std::vector<RingSums>& rings, const Vec3d& point) {
   return sum;
 }
 
+// A set's lights in double, once.
+struct Light {
+  Vec3d direction;
+  Rgbd illuminance;
+};
+std::vector<Light> in_double(const LightSet& set) {
+  std::vector<Light> lights;
+  for (const DirectionalLight& light : set.lights)
+    lights.push_back({light.direction.cast<double>(), light.illuminance.cast<double>()});
+  return lights;
+}
+
 double relative_rmse(const std::vector<Rgbd>& values, const std::vector<Rgbd>& reference) {
   double largest = 0;
   for (const Rgbd& r : reference) largest = std::max(largest, r.maxCoeff());
@@ -154,12 +172,13 @@ std::vector<Vec3d> evaluation_ground() {
 }
 
 std::vector<Rgbd> irradiance_of_lights(const LightSet& set) {
+  const std::vector<Light> lights = in_double(set);
   std::vector<Rgbd> values;
   for (const Vec3d& normal : evaluation_normals()) {
     Rgbd sum = set.ambient.cast<double>() * kPi;
-    for (const DirectionalLight& light : set.lights) {
-      const double cosine = normal.dot(light.direction.cast<double>());
-      if (cosine > 0) sum += light.illuminance.cast<double>() * cosine;
+    for (const Light& light : lights) {
+      const double cosine = normal.dot(light.direction);
+      if (cosine > 0) sum += light.illuminance * cosine;
     }
     values.push_back(sum);
   }
@@ -167,6 +186,8 @@ std::vector<Rgbd> irradiance_of_lights(const LightSet& set) {
 }
 
 std::vector<Rgbd> shadow_of_lights(const LightSet& set) {
+  std::vector<Light> lights = in_double(set);
+  std::erase_if(lights, [](const Light& light) { return light.direction.y() <= 0; });
   std::vector<Rgbd> values;
   for (const Vec3d& point : evaluation_ground()) {
     // Of a uniform sky the sphere, which touches the plane but nowhere crosses it, hides π (1/D)² · (1/D):
@@ -175,11 +196,8 @@ std::vector<Rgbd> shadow_of_lights(const LightSet& set) {
     const double distance = std::hypot(tangent, 1.0);
     Rgbd sum = set.ambient.cast<double>() * (kPi * (1 - 1 / (distance * distance * distance)));
     const Vec3d to_centre = Vec3d::UnitY() - point;
-    for (const DirectionalLight& light : set.lights) {
-      const Vec3d direction = light.direction.cast<double>();
-      if (direction.y() > 0 && direction.dot(to_centre) <= tangent)
-        sum += light.illuminance.cast<double>() * direction.y();
-    }
+    for (const Light& light : lights)
+      if (light.direction.dot(to_centre) <= tangent) sum += light.illuminance * light.direction.y();
     values.push_back(sum);
   }
   return values;

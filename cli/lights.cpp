@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/progress.h"
+#include "interface/atomic_file.h"
+#include "interface/environment_io.h"
+#include "interface/light_set_io.h"
+#include "interface/numbered_sequence.h"
+#include "lighting/decompose.h"
+#include "lighting/lat_long_image.h"
+
+namespace lightwell::cli {
+namespace {
+
+struct LightsOptions {
+  std::string environment;
+  std::string out;
+  std::string method = "best";
+  std::int64_t count = 0;
+  std::int64_t seed = 0;
+  bool sphere = false;
+  bool hemisphere = false;
+  double rotate_y_deg = 0;
+  double rate_hz = 60;
+  std::optional<std::string> temporal;
+  bool json = false;
+};
+
+// The options, checked: what the work needs.
+struct Plan {
+  Method method = Method::best;
+  int count = 1;
+  std::uint32_t seed = 0;
+  bool hemisphere = true;
+  double rotate_y_rad = 0;
+  double rate_hz = 60;
+  TemporalFilter temporal = TemporalFilter::none;
+};
+
+Result<TemporalFilter> temporal_filter(const LightsOptions& options, Method method) {
+  const bool sequence = is_numbered_sequence(options.environment);
+  const bool sampled = sampler_of(method).has_value();
+  if (!options.temporal) return sequence && sampled ? TemporalFilter::fir : TemporalFilter::none;
+  if (*options.temporal == "none") return TemporalFilter::none;
+  if (*options.temporal != "fir") return usage("--temporal is " + *options.temporal + ", allowed: fir, none");
+  if (!sequence) return usage("--temporal fir needs a numbered sequence, such as 'env_%04d.exr'");
+  if (!sampled)
+    return usage(
+        "--temporal fir needs a method that keeps a light's identity from frame to frame: standard, havran");
+  return TemporalFilter::fir;
+}
+
+Result<Plan> plan_of(const LightsOptions& options) {
+  Plan plan;
+  const auto method = method_from_name(options.method);
+  if (!method) return usage("--method is " + options.method + ", allowed: " + method_names());
+  plan.method = *method;
+  if (options.count < 1 || options.count > kMostLights)
+    return usage("--count is " + std::to_string(options.count) + ", allowed 1 to " +
+                 std::to_string(kMostLights));
+  plan.count = static_cast<int>(options.count);
+  if (options.seed < 0 || options.seed > UINT32_MAX)
+    return usage("--seed is " + std::to_string(options.seed) + ", allowed 0 to " +
+                 std::to_string(UINT32_MAX));
+  plan.seed = static_cast<std::uint32_t>(options.seed);
+  plan.hemisphere = !options.sphere;
+  if (!std::isfinite(options.rotate_y_deg)) return usage("--rotate-y is not a finite number of degrees");
+  plan.rotate_y_rad = options.rotate_y_deg * kPi / 180;
+  if (!(options.rate_hz > 0 && options.rate_hz <= 100000))
+    return usage("--rate is " + std::to_string(options.rate_hz) + ", allowed above 0 to 100000 Hz");
+  plan.rate_hz = options.rate_hz;
+  const auto temporal = temporal_filter(options, plan.method);
+  if (!temporal) return temporal.error();
+  plan.temporal = *temporal;
+  return plan;
+}
+
+// Reads an image as the map the lights are made from, and says what had to be repaired.
+Result<PolarMap> read_map(const std::filesystem::path& file, const Plan& plan) {
+  const auto environment = read_environment(file);
+  if (!environment) return environment.error();
+  if (const std::string repaired = environment->repaired(file); !repaired.empty())
+    std::fprintf(stderr, "lightwell: %s\n", repaired.c_str());
+  return polar_map_from_lat_long(environment->image, plan.hemisphere, plan.rotate_y_rad);
+}
+
+// Frame after frame to light sets: one pipeline through all of them where the method has state, else each by
+// itself.
+class Decomposer {
+ public:
+  explicit Decomposer(const Plan& plan) : plan_(plan) {}
+
+  Result<LightSet> next(const PolarMap& map) {
+    const auto sampler = sampler_of(plan_.method);
+    if (plan_.temporal == TemporalFilter::none || !sampler)
+      return decompose(map, plan_.method, plan_.count, plan_.seed);
+    if (!pipeline_) {
+      LightPipelineOptions options;
+      options.count = plan_.count;
+      options.sampler = *sampler;
+      options.relaxed = plan_.method == Method::havran;
+      options.seed = plan_.seed;
+      options.filter = plan_.temporal;
+      options.rate_hz = plan_.rate_hz;
+      options.pass_hz =
+          plan_.rate_hz * 7 / 21;  // the paper's filter at any rate (Havran et al. 2005, section 4.2)
+      options.stop_hz = plan_.rate_hz * 9 / 21;
+      options.clusters = 0;
+      auto pipeline = LightPipeline::create(map.grid, map.channels, options);
+      if (!pipeline) return pipeline.error();
+      pipeline_.emplace(std::move(pipeline).value());
+    }
+    const auto lights = pipeline_->process(map);
+    LightSet set;
+    set.method = name(plan_.method);
+    set.coverage = coverage_of(map.grid);
+    set.lights.assign(lights.begin(), lights.end());
+    set.total_illuminance = pipeline_->total_illuminance();
+    return set;
+  }
+  [[nodiscard]] double delay_frames() const { return pipeline_ ? pipeline_->delay_frames() : 0; }
+
+ private:
+  Plan plan_;
+  std::optional<LightPipeline> pipeline_;
+};
+
+void report(const LightsOptions& options, const Plan& plan, std::size_t frames, double delay_frames,
+            double ms, const Rgb& total) {
+  if (options.json) {
+    const nlohmann::ordered_json result = {{"method", name(plan.method)},
+                                           {"coverage", plan.hemisphere ? "hemisphere" : "sphere"},
+                                           {"count", plan.count},
+                                           {"frames", frames},
+                                           {"delay_frames", delay_frames},
+                                           {"total_illuminance", {total[0], total[1], total[2]}},
+                                           {"ms", ms},
+                                           {"out", options.out}};
+    std::printf("%s\n", result.dump().c_str());
+  } else {
+    std::fprintf(stderr, "lightwell: %zu %s of %d lights to %s\n", frames, frames == 1 ? "set" : "sets",
+                 plan.count, options.out.c_str());
+  }
+}
+
+int run_sequence(const LightsOptions& options, const Plan& plan) {
+  const auto files = sequence_files(options.environment);
+  if (!files) return fail(files.error());
+  auto out = AtomicFileWriter::create(options.out);
+  if (!out) return fail(out.error());
+  Decomposer decomposer(plan);
+  Progress progress(files->size());
+  std::optional<PolarGrid> grid;
+  Rgb total = Rgb::Zero();
+  double ms = 0;
+  for (std::size_t i = 0; i < files->size(); ++i) {
+    const auto map = read_map((*files)[i], plan);
+    if (!map) return fail(map.error());
+    if (grid && !(*grid == map->grid))
+      return fail(
+          {ErrorKind::bad_input, (*files)[i].string() + ": has another size than the frames before it"});
+    grid = map->grid;
+    const auto begin = std::chrono::steady_clock::now();
+    const auto set = decomposer.next(*map);
+    ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    if (!set) return fail({set.error().kind, (*files)[i].string() + ": " + set.error().message});
+    if (const Status status = out->append(light_set_to_json(*set, true)); !status)
+      return fail(status.error());
+    total = set->total_illuminance;
+    progress.done(i + 1);
+  }
+  if (const Status status = out->commit(); !status) return fail(status.error());
+  report(options, plan, files->size(), decomposer.delay_frames(), ms, total);
+  return 0;
+}
+
+int run_image(const LightsOptions& options, const Plan& plan) {
+  const auto map = read_map(options.environment, plan);
+  if (!map) return fail(map.error());
+  const auto begin = std::chrono::steady_clock::now();
+  const auto set = decompose(*map, plan.method, plan.count, plan.seed);
+  const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - begin;
+  if (!set) return fail({set.error().kind, options.environment + ": " + set.error().message});
+  if (const Status status = write_light_set(options.out, *set); !status) return fail(status.error());
+  report(options, plan, 1, 0, ms.count(), set->total_illuminance);
+  return 0;
+}
+
+int run(const LightsOptions& options) {
+  const auto plan = plan_of(options);
+  if (!plan) return fail(plan.error());
+  return is_numbered_sequence(options.environment) ? run_sequence(options, *plan) : run_image(options, *plan);
+}
+
+}  // namespace
+
+Command add_lights(CLI::App& app) {
+  const auto o = std::make_shared<LightsOptions>();
+  CLI::App* command = app.add_subcommand("lights", "Decompose an environment image into directional lights");
+  command->footer(
+      "Example: lightwell lights env.exr --count 64 --out lights.json\n"
+      "         lightwell lights 'env_%04d.exr' --count 300 --method havran --rate 25 --out lights.jsonl");
+  command
+      ->add_option("environment", o->environment,
+                   "Latitude–longitude image, EXR or Radiance HDR, or a numbered sequence ('env_%04d.exr')")
+      ->required()
+      ->type_name("ENV");
+  command->add_option("--count", o->count, "Number of lights, 1 to 100000")->required()->type_name("N");
+  command->add_option("--method", o->method, "One of: " + method_names())
+      ->capture_default_str()
+      ->type_name("M");
+  auto* hemisphere = command->add_flag("--hemisphere", o->hemisphere, "The half above the horizon (default)");
+  command->add_flag("--sphere", o->sphere, "All of the image")->excludes(hemisphere);
+  command->add_option("--seed", o->seed, "Turns the points of standard, havran and uniform; 0: none")
+      ->type_name("S");
+  command->add_option("--rotate-y", o->rotate_y_deg, "Turn the image about +Y: azimuth λ comes to λ + DEG")
+      ->type_name("DEG");
+  command->add_option("--rate", o->rate_hz, "Frames a second of a sequence, Hz")
+      ->capture_default_str()
+      ->type_name("HZ");
+  command
+      ->add_option("--temporal", o->temporal,
+                   "Of a sequence, fir or none: default fir for standard and havran, none for the others")
+      ->type_name("FILTER");
+  command->add_option("--out", o->out, "Light set, JSON; of a sequence one set a line")
+      ->required()
+      ->type_name("FILE");
+  command->add_flag("--json", o->json, "Machine-readable summary on stdout");
+  return {command, [o] { return run(*o); }};
+}
+
+}  // namespace lightwell::cli
