@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-// ThreadSanitizer does not see the locks of libraries that were built without it: GLib's are futexes of its own. What
-// these libraries do inside is not ours to test; what our threads do with the results still is.
+// ThreadSanitizer does not see the locks of libraries that were built without it: GLib's are futexes of its
+// own. What these libraries do inside is not ours to test; what our threads do with the results still is.
 
 extern "C" const char* __tsan_default_suppressions();
 
