@@ -86,7 +86,7 @@ class RingDistribution {
   // power(blend)]. Always a sector with power, if there is one.
   [[nodiscard]] SectorPlace sector_at(const RingBlend& blend, double target) const noexcept;
   // The same for kTogether at once: the searches run in step, so that none waits for its own loads alone.
-  static constexpr std::size_t kTogether = 4;
+  static constexpr std::size_t kTogether = 8;
   void rings_at(const std::array<double, kTogether>& t,
                 std::array<RingPlace, kTogether>& places) const noexcept;
   void sectors_at(const std::array<RingBlend, kTogether>& blends,
