@@ -99,6 +99,7 @@ void FramePath::process(const FrameInfo& info, std::span<const std::byte> codes)
   out.capture_mono_ns = info.capture_mono_ns;
   out.capture_utc_ns = info.capture_utc_ns;
   out.received_mono_ns = info.received_mono_ns;
+  out.format = info.format;
   out.exposure_us = info.exposure_us;
   out.coverage = out.map.grid.theta_max_rad > kPi / 2 + 1e-6 ? Coverage::sphere : Coverage::hemisphere;
   out.total_illuminance = lights_->total_illuminance();

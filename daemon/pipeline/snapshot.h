@@ -9,6 +9,7 @@
 #include <mutex>
 #include <vector>
 
+#include "lighting/frame_format.h"
 #include "lighting/light_set.h"
 #include "lighting/polar_map.h"
 
@@ -22,6 +23,7 @@ struct Snapshot {
   std::int64_t capture_utc_ns = 0;
   std::int64_t received_mono_ns = 0;
   std::int64_t publish_mono_ns = 0;  // the lights were ready
+  FrameFormat format;  // of the raw frame
   double exposure_us = 0;
   std::array<char, 17> calibration_id{};  // zero-terminated
   Coverage coverage = Coverage::hemisphere;
@@ -37,7 +39,7 @@ struct Snapshot {
 // the writer never waits for a reader. Snapshots are allocated once. At most kMaxReaders leases at a time.
 class SnapshotChannel {
  public:
-  static constexpr std::size_t kMaxReaders = 6;
+  static constexpr std::size_t kMaxReaders = 10;
 
   // prototype: a snapshot of the final shape; copied into every slot.
   explicit SnapshotChannel(const Snapshot& prototype);

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/alarm.h"
+
+#include <fmt/format.h>
+
+namespace lightwell {
+namespace {
+
+// Light this old is no longer the light on set: longer than the slowest camera's frame, shorter than patience.
+constexpr double kStaleMs = 1000;
+
+}  // namespace
+
+std::string alarm_for(const DaemonStatus& status) {
+  switch (status.source_state) {
+    case SourceState::no_device:
+    case SourceState::stalled:
+    case SourceState::wrong_format:
+      return fmt::format("Camera: {} ({})", name(status.source_state), status.source_description);
+    case SourceState::opening:
+    case SourceState::streaming:
+    case SourceState::ended:
+      break;
+  }
+  if (!status.calibration_verdict.empty()) return "Calibration: " + status.calibration_verdict;
+  if (status.source_state == SourceState::streaming && status.published > 0 && status.frame_age_ms > kStaleMs)
+    return fmt::format("Light is {:.1f} s old", status.frame_age_ms / 1000);
+  if (!status.recording.error.empty()) return "Recording stopped: " + status.recording.error;
+  if (status.recording.active && status.recording.dropped > 0)
+    return fmt::format("Recording has lost {} frames: the disk is too slow", status.recording.dropped);
+  return {};
+}
+
+}  // namespace lightwell

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/assembly.h"
+
+#include <optional>
+#include <string>
+
+#include "daemon/capture/recording_source.h"
+#include "daemon/capture/simulated_source.h"
+#include "interface/calibration_io.h"
+
+namespace lightwell {
+namespace {
+
+// "recording:take.mkv" and the kind "recording" give "take.mkv".
+std::optional<std::string> after_kind(const std::string& address, const std::string& kind) {
+  if (address.compare(0, kind.size() + 1, kind + ":") != 0) return std::nullopt;
+  return address.substr(kind.size() + 1);
+}
+
+Error no_calibration(const std::string& source) {
+  return {ErrorKind::usage, source +
+                                ": no calibration; give --calibration DIR (or calibration.directory) with "
+                                "response.json and lens.json of this camera"};
+}
+
+}  // namespace
+
+CaptureOptions capture_options(const Configuration& configuration) {
+  const auto& source = configuration.source;
+  CaptureOptions options;
+  options.width = source.width;
+  options.height = source.height;
+  options.pixel_format = source.pixel_format;
+  options.rate_hz = source.rate_hz;
+  options.exposure_us = source.exposure_us;
+  options.buffers = source.buffers;
+  options.packet_size = source.packet_size;
+  options.socket_buffer_bytes = source.socket_buffer_bytes;
+  options.speed = source.speed;
+  options.loop = source.loop;
+  return options;
+}
+
+FramePathOptions frame_path_options(const Configuration& configuration) {
+  const auto& given = configuration.lights;
+  FramePathOptions options;
+  options.radiometer.grid.rings = configuration.map.rings;
+  options.radiometer.grid.sectors = configuration.map.sectors;
+  options.lights.count = given.count;
+  options.lights.sampler = given.sampler == "standard" ? LightPipelineOptions::Sampler::standard
+                                                       : LightPipelineOptions::Sampler::havran;
+  options.lights.relaxed = given.relaxed;
+  options.lights.seed = static_cast<std::uint32_t>(given.seed);
+  options.lights.filter = given.filter == "none" ? TemporalFilter::none : TemporalFilter::fir;
+  options.lights.pass_hz = given.pass_hz;
+  options.lights.stop_hz = given.stop_hz;
+  options.lights.filter_order = given.order;
+  options.lights.clusters = given.clusters;
+  return options;
+}
+
+Result<Calibration> choose_calibration(const Configuration& configuration) {
+  const std::string& directory = configuration.calibration.directory;
+  const std::string& source = configuration.source.address;
+  if (!directory.empty()) return read_calibration(directory);
+  if (const auto name = after_kind(source, "simulated"))
+    return simulated_calibration(*name, capture_options(configuration));
+  if (const auto file = after_kind(source, "recording")) {
+    auto attached = recording_calibration(*file);
+    if (!attached) return attached.error();
+    if (*attached) return **attached;
+  }
+  return no_calibration(source);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "daemon/capture/capture_source.h"
+#include "daemon/configuration.h"
+#include "daemon/pipeline/frame_path.h"
+#include "lighting/calibration.h"
+#include "lighting/result.h"
+
+namespace lightwell {
+
+// From the configuration's words to the parts they ask for. Nothing here starts anything.
+
+CaptureOptions capture_options(const Configuration& configuration);
+
+FramePathOptions frame_path_options(const Configuration& configuration);
+
+// The configured folder's calibration; without one, the recording's own or the simulation's own; else usage,
+// saying what to do. bad_input as the readers of the files say.
+Result<Calibration> choose_calibration(const Configuration& configuration);
+
+}  // namespace lightwell

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/daemon.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <mutex>
+
+#include "daemon/alarm.h"
+#include "daemon/assembly.h"
+#include "daemon/pipeline/clock.h"
+#include "daemon/pipeline/pipeline.h"
+#include "daemon/pipeline/snapshot.h"
+#include "daemon/publish/publisher.h"
+#include "daemon/record/recorder.h"
+#include "daemon/web/listen_address.h"
+#include "daemon/web/server.h"
+#include "interface/calibration_io.h"
+
+namespace lightwell {
+namespace {
+
+// The folder must be there when a take is asked for, and a typing error should show at the start.
+Status check_record_directory(const Configuration& configuration) {
+  const std::filesystem::path directory = configuration.record.directory;
+  std::error_code error;
+  if (std::filesystem::is_directory(directory, error)) return {};
+  return Error{ErrorKind::failed, fmt::format("record.directory = {}: not a folder", directory.string())};
+}
+
+// What a reload cannot change, by name; empty: nothing of that changed.
+std::string needs_restart(const Configuration& now, const Configuration& wanted) {
+  if (now.http != wanted.http) return "[http]";
+  if (now.dds != wanted.dds) return "[dds]";
+  if (now.probe != wanted.probe) return "[probe]";
+  if (now.record != wanted.record) return "[record]";
+  return {};
+}
+
+}  // namespace
+
+// In order of construction: whoever uses a part comes after it, so that destruction goes the other way.
+struct Daemon::Parts {
+  Parts(const Configuration& given, Calibration calibration_given)
+      : configuration(given),
+        snapshots(FramePath::prototype(frame_path_options(given))),
+        calibration(std::move(calibration_given)),
+        recorder(given.record.directory),
+        pipeline(snapshots, &recorder) {}
+
+  std::int64_t start_mono_ns = mono_now_ns();
+  mutable std::mutex mutex;  // guards configuration and calibration
+  Configuration configuration;
+  SnapshotChannel snapshots;
+  Calibration calibration;
+  Recorder recorder;
+  Pipeline pipeline;
+  std::unique_ptr<Publisher> publisher;
+  std::unique_ptr<WebServer> web;
+};
+
+Status Daemon::check(const Configuration& configuration) {
+  for (const Status& status :
+       {check_listen_address(configuration.http.listen), check_record_directory(configuration)})
+    if (!status) return status;
+  const auto source = make_capture_source(configuration.source.address, capture_options(configuration));
+  if (!source) return source.error();
+  const auto calibration = choose_calibration(configuration);
+  if (!calibration) return calibration.error();
+  return {};
+}
+
+Result<std::unique_ptr<Daemon>> Daemon::start(const Configuration& configuration) {
+  auto source = make_capture_source(configuration.source.address, capture_options(configuration));
+  if (!source) return source.error();
+  auto calibration = choose_calibration(configuration);
+  if (!calibration) return calibration.error();
+
+  auto parts = std::make_unique<Parts>(configuration, *calibration);
+  Parts& p = *parts;
+  std::unique_ptr<Daemon> daemon(new Daemon(std::move(parts)));
+  auto publisher = Publisher::start({configuration.probe.name,
+                                     {configuration.dds.domain, configuration.dds.network_interface},
+                                     configuration.dds.environment_hz},
+                                    p.snapshots, *daemon);
+  if (!publisher) return publisher.error();
+  p.publisher = std::move(*publisher);
+  auto web =
+      WebServer::start({configuration.http.listen, configuration.lights.sampler}, p.snapshots, *daemon);
+  if (!web) return web.error();
+  p.web = std::move(*web);
+
+  const Status started = p.pipeline.start(
+      std::move(*source),
+      std::make_shared<FramePath>(p.calibration, frame_path_options(configuration), p.snapshots));
+  if (!started) return started.error();
+  return daemon;
+}
+
+Daemon::Daemon(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Daemon::~Daemon() {
+  stop();
+}
+
+Status Daemon::reload(const Configuration& wanted) {
+  const std::scoped_lock lock(parts_->mutex);
+  const Configuration& now = parts_->configuration;
+  if (const std::string section = needs_restart(now, wanted); !section.empty())
+    return Error{ErrorKind::usage, section + " changed; that takes a restart"};
+  const auto calibration = choose_calibration(wanted);
+  if (!calibration) return calibration.error();
+  std::shared_ptr<CaptureSource> source;
+  if (now.source != wanted.source) {
+    auto made = make_capture_source(wanted.source.address, capture_options(wanted));
+    if (!made) return made.error();
+    source = std::move(*made);
+  }
+  const Status replaced = parts_->pipeline.replace(
+      std::move(source),
+      std::make_shared<FramePath>(*calibration, frame_path_options(wanted), parts_->snapshots));
+  if (!replaced) return replaced;
+  parts_->configuration = wanted;
+  parts_->calibration = *calibration;
+  return {};
+}
+
+void Daemon::stop() {
+  // The take first: nothing else can lose anything. That none was begun is no failure here.
+  if (parts_->recorder.stats().active) {
+    if (const Status closed = parts_->recorder.stop(); !closed) spdlog::error("{}", closed.error().message);
+  }
+  parts_->pipeline.stop();
+  parts_->snapshots.close();
+  parts_->web.reset();
+  parts_->publisher.reset();
+}
+
+DaemonStatus Daemon::status() const {
+  const Pipeline::View view = parts_->pipeline.view();
+  const std::int64_t now_ns = mono_now_ns();
+  DaemonStatus status;
+  status.version = "0.1.0";
+  status.uptime_s = static_cast<double>(now_ns - parts_->start_mono_ns) * 1e-9;
+  {
+    const std::scoped_lock lock(parts_->mutex);
+    status.source = parts_->configuration.source.address;
+    status.calibration_id = parts_->calibration.id;
+  }
+  if (view.source) {  // between construction and start there is none
+    status.source_state = view.source->state();
+    status.source_description = view.source->describe();
+    status.capture = view.source->counters();
+    status.nominal_rate_hz = view.source->rate_hz();
+  }
+  status.measured_rate_hz = view.measured_rate_hz;
+  status.calibration_verdict = view.mismatch;
+  status.dropped_by_pipeline = status.capture.skipped;
+  if (view.path) {
+    status.published = view.path->published();
+    const auto develop = view.path->develop_ms().quantiles();
+    const auto lights = view.path->lights_ms().quantiles();
+    const auto latency = view.path->latency_ms().quantiles();
+    status.develop_ms_p50 = develop.p50, status.develop_ms_p99 = develop.p99;
+    status.lights_ms_p50 = lights.p50, status.lights_ms_p99 = lights.p99;
+    status.latency_ms_p50 = latency.p50, status.latency_ms_p99 = latency.p99;
+  }
+  if (const auto newest = parts_->snapshots.wait_newer(0, std::chrono::milliseconds(0)))
+    status.frame_age_ms = static_cast<double>(now_ns - newest->capture_mono_ns) * 1e-6;
+  const Recorder::Stats take = parts_->recorder.stats();
+  status.recording = {take.active, take.file, take.frames, take.dropped, take.bytes, take.error};
+  status.alarm = alarm_for(status);
+  return status;
+}
+
+Status Daemon::start_recording(const std::string& file) {
+  const auto newest = parts_->snapshots.wait_newer(0, std::chrono::milliseconds(0));
+  if (!newest) return Error{ErrorKind::failed, "nothing to record: no frame has come yet"};
+  RecordingHeader header;
+  header.format = newest->format;
+  header.rate_hz = parts_->pipeline.view().source->rate_hz();
+  header.start_utc_ns = utc_now_ns();
+  const std::scoped_lock lock(parts_->mutex);
+  header.codec = parts_->configuration.record.codec == "ffv1" ? RecordingCodec::ffv1 : RecordingCodec::raw;
+  header.source = parts_->configuration.source.address;
+  header.calibration_json = calibration_to_json(parts_->calibration);
+  return parts_->recorder.start(file, header);
+}
+
+Status Daemon::stop_recording() {
+  return parts_->recorder.stop();
+}
+
+std::string Daemon::url() const {
+  return parts_->web->url();
+}
+std::uint64_t Daemon::heartbeat() const {
+  return parts_->pipeline.heartbeat();
+}
+bool Daemon::ended() const {
+  return parts_->pipeline.view().source->state() == SourceState::ended;
+}
+
+}  // namespace lightwell

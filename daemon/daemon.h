@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "daemon/configuration.h"
+#include "daemon/pipeline/status.h"
+#include "lighting/calibration.h"
+#include "lighting/result.h"
+
+namespace lightwell {
+
+// The whole daemon in one process: capture → frame path → {DDS, HTTP, recorder}. Made from a configuration,
+// ends with stop. All methods may be called from any thread.
+class Daemon final : public DaemonControl {
+ public:
+  // What --check checks: addresses, calibration, record directory; nothing is opened or started.
+  static Status check(const Configuration& configuration);
+
+  static Result<std::unique_ptr<Daemon>> start(const Configuration& configuration);
+  ~Daemon() override;
+
+  // Lights, map, calibration and source change between two frames. What needs new sockets ([http], [dds],
+  // [probe]) is refused, naming the key; nothing has changed then.
+  Status reload(const Configuration& configuration);
+  // Closes the take, then everything else. Idempotent.
+  void stop();
+
+  [[nodiscard]] DaemonStatus status() const override;
+  Status start_recording(const std::string& file) override;
+  Status stop_recording() override;
+
+  [[nodiscard]] std::string url() const;  // of the page, with the real port where 0 was asked for
+  // Advances while the frame path's loop turns.
+  [[nodiscard]] std::uint64_t heartbeat() const;
+  // A recording as source that is not looped has come to its end.
+  [[nodiscard]] bool ended() const;
+
+ private:
+  struct Parts;
+  explicit Daemon(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <poll.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/signalfd.h>
+#include <systemd/sd-daemon.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <thread>
+
+#include "daemon/configuration.h"
+#include "daemon/daemon.h"
+#include "daemon/pipeline/clock.h"
+
+// lightwelld: reads its configuration, runs the daemon, and turns signals into what they ask for.
+namespace {
+
+using namespace lightwell;
+
+struct Arguments {
+  std::string config, calibration, record_dir, source;
+  bool print_config = false;
+  bool check = false;
+
+  [[nodiscard]] Overrides overrides() const {
+    Overrides given;
+    if (!calibration.empty()) given.emplace_back("calibration.directory", calibration);
+    if (!record_dir.empty()) given.emplace_back("record.directory", record_dir);
+    if (!source.empty()) given.emplace_back("source.address", source);
+    return given;
+  }
+};
+
+void add_options(CLI::App& app, Arguments& a) {
+  app.add_option("--config", a.config, "TOML file; --print-config shows every key");
+  app.add_option("--calibration", a.calibration, "folder with response.json, lens.json, flat.json");
+  app.add_option("--record-dir", a.record_dir, "folder for takes");
+  app.add_option("--source", a.source, "aravis:ADDRESS, recording:FILE or simulated:NAME");
+  app.add_flag("--print-config", a.print_config, "print the configuration with the origin of every value");
+  app.add_flag("--check", a.check, "check configuration and calibration, then end");
+  app.footer("Example: lightwelld --source aravis:192.168.1.20 --calibration probe-07/ --record-dir takes/");
+}
+
+int fail(const Error& error) {
+  std::fprintf(stderr, "lightwelld: %s\n", error.message.c_str());
+  return static_cast<int>(error.kind);
+}
+
+int block_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int s : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, s);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  return signalfd(-1, &signals, SFD_CLOEXEC);
+}
+
+void reload(Daemon& daemon, const Arguments& arguments) {
+  sd_notifyf(0, "RELOADING=1\nMONOTONIC_USEC=%lld", static_cast<long long>(mono_now_ns() / 1000));
+  const auto loaded = load_configuration(arguments.config, arguments.overrides());
+  const Status done = loaded ? daemon.reload(loaded->configuration) : Status(loaded.error());
+  if (done)
+    spdlog::info("configuration reloaded");
+  else
+    spdlog::error("configuration not reloaded, the old one goes on: {}", done.error().message);
+  sd_notify(0, "READY=1");
+}
+
+// The watchdog is fed only while the frame path's loop turns.
+void serve(Daemon& daemon, const Arguments& arguments, int signals) {
+  std::uint64_t watchdog_us = 0;
+  const bool watched = sd_watchdog_enabled(0, &watchdog_us) > 0;
+  const int interval_ms = watched ? std::max(1, static_cast<int>(watchdog_us / 3000)) : 1000;
+  std::uint64_t last_heartbeat = 0;
+  for (;;) {
+    pollfd wait{signals, POLLIN, 0};
+    if (poll(&wait, 1, interval_ms) > 0) {
+      signalfd_siginfo info{};
+      if (read(signals, &info, sizeof info) != sizeof info) continue;
+      if (info.ssi_signo != SIGHUP) return;
+      reload(daemon, arguments);
+    }
+    const std::uint64_t heartbeat = daemon.heartbeat();
+    if (watched && heartbeat != last_heartbeat) sd_notify(0, "WATCHDOG=1");
+    last_heartbeat = heartbeat;
+  }
+}
+
+// Everything that must be closed well is closed within a second; a camera that died may keep Aravis busy for
+// longer, and nothing is lost by leaving it.
+void stop(Daemon& daemon) {
+  sd_notify(0, "STOPPING=1");
+  std::thread([] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(900));
+    std::_Exit(0);
+  }).detach();
+  daemon.stop();
+}
+
+int run(const Arguments& arguments) {
+  const auto loaded = load_configuration(arguments.config, arguments.overrides());
+  if (!loaded) return fail(loaded.error());
+  if (arguments.print_config) {
+    std::fputs(print_configuration(*loaded).c_str(), stdout);
+    return 0;
+  }
+  const Status checked = Daemon::check(loaded->configuration);
+  if (!checked) return fail(checked.error());
+  if (arguments.check) {
+    std::fprintf(stderr, "lightwelld: configuration and calibration are good\n");
+    return 0;
+  }
+  spdlog::set_level(spdlog::level::from_str(loaded->configuration.log.level));
+  const int signals = block_signals();
+  auto daemon = Daemon::start(loaded->configuration);
+  if (!daemon) return fail(daemon.error());
+  spdlog::info("page: {}", (*daemon)->url());
+  sd_notify(0, "READY=1");
+  serve(**daemon, arguments, signals);
+  stop(**daemon);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"lightwelld: camera frames to lights, live", "lightwelld"};
+  app.set_version_flag("--version", "lightwelld 0.1.0");
+  app.failure_message(CLI::FailureMessage::simple);
+  Arguments arguments;
+  add_options(app, arguments);
+  try {
+    app.parse(argc, argv);
+    spdlog::set_default_logger(spdlog::stderr_logger_mt("lightwelld"));
+    spdlog::set_pattern("lightwelld: %l: %v");
+    return run(arguments);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ErrorKind::usage);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "lightwelld: %s\n", error.what());
+    return static_cast<int>(ErrorKind::failed);
+  }
+}

@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+// From the camera on the wire to published lights, with the programs as they ship.
+
+#include <gmock/gmock.h>
+
+#include <csignal>
+
+#include "interface/recording.h"
+#include "tests/integration/chain/chain.h"
+
+namespace lightwell::test {
+namespace {
+
+using testing::HasSubstr;
+
+void expect_within(const Rgbd& measured, const Rgbd& truth, double relative) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(measured[c], truth[c], relative * truth[c]) << "channel " << c;
+}
+
+// The issue's bounds for a scene at rest: 1 % without noise, 2 % with the camera's ordinary noise.
+TEST_F(Chain, StaticIlluminanceIsTheCamerasTruth) {
+  start_camera({"--scenario", "static", "--size", "640x480", "--rate", "30", "--noise", "0"});
+  start_daemon();
+  ASSERT_TRUE(published_reaches(20)) << daemon_->stderr_text();
+  expect_within(rgb_of(get("/api/v1/lights").at("total_illuminance")), rgb_of(last_truth().at("total_illuminance")),
+                0.01);
+}
+
+TEST_F(Chain, StaticIlluminanceInColourWithNoise) {
+  start_camera({"--scenario", "static", "--size", "640x480", "--rate", "30", "--pixel-format", "BayerRG12"});
+  start_daemon();
+  ASSERT_TRUE(published_reaches(20)) << daemon_->stderr_text();
+  expect_within(rgb_of(get("/api/v1/lights").at("total_illuminance")), rgb_of(last_truth().at("total_illuminance")),
+                0.02);
+}
+
+TEST_F(Chain, LightsSumToTheTotalAndStandAboveTheHorizon) {
+  start_camera({"--scenario", "day", "--size", "320x240", "--rate", "30"});
+  start_daemon();
+  ASSERT_TRUE(published_reaches(30));
+  const auto set = get("/api/v1/lights");
+  Rgbd sum = Rgbd::Zero();
+  for (const auto& light : set.at("lights")) {
+    const auto& d = light.at("direction");
+    const Vec3d direction(d.at(0), d.at(1), d.at(2));
+    EXPECT_NEAR(direction.norm(), 1, 1e-5);
+    EXPECT_GE(direction.y(), 0);
+    sum += rgb_of(light.at("illuminance"));
+  }
+  EXPECT_LE(set.at("lights").size(), 72u);
+  expect_within(sum, rgb_of(set.at("total_illuminance")), 1e-4);  // floats written and read exactly; sums of 72
+}
+
+TEST_F(Chain, CameraKilledIsSaidAndLightReturnsWithTheCamera) {
+  const Words options = {"--scenario", "static", "--size", "320x240", "--rate", "30"};
+  start_camera(options);
+  start_daemon();
+  ASSERT_TRUE(published_reaches(10));
+  camera_->send(SIGKILL);
+  ASSERT_EQ(camera_->wait_for_end(), -SIGKILL);
+  EXPECT_TRUE(eventually([&] { return status().value("alarm", "") != ""; }));
+  const std::uint64_t before = published();
+  start_camera(options);
+  EXPECT_TRUE(published_reaches(before + 20)) << daemon_->stderr_text();
+  EXPECT_TRUE(eventually([&] { return status().value("alarm", "x").empty(); })) << status();
+  EXPECT_TRUE(daemon_->running());
+}
+
+TEST_F(Chain, CameraReplacedByOneOfAnotherSizeIsNamed) {
+  start_camera({"--scenario", "static", "--size", "320x240", "--rate", "30"});
+  start_daemon();
+  ASSERT_TRUE(published_reaches(10));
+  camera_->send(SIGTERM);
+  ASSERT_EQ(camera_->wait_for_end(), 0);
+  Words command = {program("lightwell-camera"), "--address", address_, "--scenario", "static", "--size", "160x120",
+                   "--rate", "30"};
+  camera_ = std::make_unique<ChildProcess>(command, folder_.path() / "camera.log");
+  EXPECT_TRUE(eventually([&] { return status().value("alarm", "").find("160") != std::string::npos; },
+                         std::chrono::seconds(60)))
+      << status();
+}
+
+TEST_F(Chain, DaemonStartedBeforeItsCameraFindsIt) {
+  start_camera({"--scenario", "static", "--size", "320x240", "--rate", "30"});  // for the calibration
+  camera_->send(SIGTERM);
+  ASSERT_EQ(camera_->wait_for_end(), 0);
+  start_daemon();
+  EXPECT_TRUE(eventually([&] { return status().value("alarm", "") != ""; }));
+  start_camera({"--scenario", "static", "--size", "320x240", "--rate", "30"});
+  EXPECT_TRUE(published_reaches(10)) << daemon_->stderr_text();
+}
+
+TEST_F(Chain, TerminationClosesTheTake) {
+  start_camera({"--scenario", "static", "--size", "320x240", "--rate", "30"});
+  start_daemon();
+  ASSERT_TRUE(published_reaches(5));
+  ASSERT_EQ(post("/api/v1/record", R"({"action": "start", "file": "take.mkv"})"), 200);
+  ASSERT_TRUE(eventually([&] { return status().at("recording").value("frames", 0) >= 20; })) << status();
+  daemon_->send(SIGTERM);
+  ASSERT_EQ(daemon_->wait_for_end(), 0) << daemon_->stderr_text();
+  auto take = RecordingReader::open(folder_.path() / "take.mkv");
+  ASSERT_TRUE(take) << take.error().message;
+  EXPECT_TRUE((*take)->complete());
+  EXPECT_GE((*take)->frame_count().value(), 20u);
+  EXPECT_FALSE((*take)->header().calibration_json.empty());
+}
+
+TEST_F(Chain, FullDiskEndsTheTakeAndNotTheLight) {
+  start_camera({"--scenario", "static", "--size", "320x240", "--rate", "30"});
+  ChildProcess::Limits limits;
+  limits.file_bytes = 2'000'000;  // 13 frames
+  start_daemon("", limits);
+  ASSERT_TRUE(published_reaches(5));
+  ASSERT_EQ(post("/api/v1/record", R"({"action": "start", "file": "take.mkv"})"), 200);
+  ASSERT_TRUE(eventually([&] { return status().value("alarm", "") != ""; })) << status();
+  EXPECT_FALSE(status().at("recording").at("active").get<bool>());
+  EXPECT_TRUE(published_reaches(published() + 20));
+  auto take = RecordingReader::open(folder_.path() / "take.mkv");
+  ASSERT_TRUE(take) << take.error().message;
+  EXPECT_GE((*take)->frame_count().value(), 5u);
+}
+
+TEST_F(Chain, ReloadChangesTheLightsWithoutAPause) {
+  start_camera({"--scenario", "static", "--size", "320x240", "--rate", "30"});
+  start_daemon();
+  ASSERT_TRUE(published_reaches(10));
+  write_configuration("[lights]\ncount = 9\nclusters = 0\n");
+  daemon_->send(SIGHUP);
+  EXPECT_TRUE(eventually([&] { return get("/api/v1/lights").at("lights").size() == 9; })) << daemon_->stderr_text();
+  EXPECT_EQ(status().at("capture").at("reconnects"), 0);
+  write_configuration("[lights]\ncount = 0\n");
+  daemon_->send(SIGHUP);
+  EXPECT_TRUE(daemon_->wait_for_line("not reloaded"));
+  EXPECT_TRUE(published_reaches(published() + 10));
+  EXPECT_EQ(get("/api/v1/lights").at("lights").size(), 9u);
+}
+
+TEST_F(Chain, RecordedTakeReplaysTheSameLightsBitForBit) {
+  start_camera({"--scenario", "studio", "--size", "160x120", "--rate", "30"});
+  start_daemon();
+  ASSERT_TRUE(published_reaches(5));
+  ASSERT_EQ(post("/api/v1/record", R"({"action": "start", "file": "take.mkv"})"), 200);
+  ASSERT_TRUE(eventually([&] { return status().at("recording").value("frames", 0) >= 15; }));
+  ASSERT_EQ(post("/api/v1/record", R"({"action": "stop"})"), 200);
+  daemon_.reset();
+  nlohmann::json runs[2];
+  for (nlohmann::json& lights : runs) {
+    write_configuration("[source]\nspeed = 0\n");
+    daemon_ = std::make_unique<ChildProcess>(
+        Words{program("lightwelld"), "--config", config_file().string(), "--source",
+              "recording:" + (folder_.path() / "take.mkv").string()},
+        folder_.path() / "replay.log");
+    const auto url = daemon_->wait_for_line("page: http://");
+    ASSERT_TRUE(url) << daemon_->stderr_text();
+    http_ = url->substr(0, url->find('/'));
+    ASSERT_TRUE(eventually([&] { return status().value("source_state", "") == "ended"; })) << status();
+    lights = get("/api/v1/lights");
+    daemon_.reset();
+  }
+  ASSERT_FALSE(runs[0].at("lights").empty());
+  EXPECT_EQ(runs[0].at("lights"), runs[1].at("lights"));
+  EXPECT_EQ(runs[0].at("sequence"), runs[1].at("sequence"));
+}
+
+// Exit codes and the one line, as a person at the terminal meets them.
+class DaemonCommandLine : public Chain {
+ protected:
+  int run(const Words& options) {
+    Words command = {program("lightwelld")};
+    command.insert(command.end(), options.begin(), options.end());
+    ChildProcess process(command, folder_.path() / "daemon.log");
+    const int code = process.wait_for_end().value_or(-1000);
+    text_ = process.stderr_text();
+    EXPECT_EQ(std::count(text_.begin(), text_.end(), '\n'), 1) << text_;
+    return code;
+  }
+  std::string text_;
+};
+
+TEST_F(DaemonCommandLine, BadInputIsOneLineAndItsExitCode) {
+  EXPECT_EQ(run({"--source", "carrier-pigeon:7"}), 2);
+  EXPECT_THAT(text_, HasSubstr("carrier-pigeon"));
+  EXPECT_EQ(run({"--source", "aravis:127.0.0.1"}), 2);
+  EXPECT_THAT(text_, HasSubstr("--calibration"));
+  EXPECT_EQ(run({"--source", "aravis:127.0.0.1", "--calibration", "/nonexistent"}), 3);
+  EXPECT_EQ(run({"--source", "recording:/nonexistent.mkv", "--check"}), 3);
+  EXPECT_EQ(run({"--config", "/nonexistent.toml"}), 3);
+  EXPECT_EQ(run({"--record-dir", "/nonexistent", "--source", "simulated:static"}), 1);
+  std::ofstream(config_file()) << "[http]\nlisten = \"0.0.0.0:8650\"\n";
+  EXPECT_EQ(run({"--config", config_file().string(), "--source", "simulated:static", "--check"}), 2);
+  EXPECT_THAT(text_, HasSubstr("0.0.0.0"));
+  EXPECT_THAT(text_, HasSubstr("token"));
+}
+
+TEST_F(DaemonCommandLine, CheckAcceptsWhatIsGood) {
+  EXPECT_EQ(run({"--source", "simulated:static", "--record-dir", folder_.path().string(), "--check"}), 0);
+}
+
+}  // namespace
+}  // namespace lightwell::test

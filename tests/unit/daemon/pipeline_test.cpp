@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/pipeline/pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstring>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "daemon/pipeline/clock.h"
+#include "tests/support/eventually.h"
+
+namespace lightwell {
+namespace {
+
+using std::chrono::milliseconds;
+using test::eventually;
+
+constexpr FrameFormat kFormat{64, 64, PixelFormat::mono12};
+
+Calibration calibration_for(int size) {
+  Calibration calibration;
+  calibration.response.model = LogResponse{1000, 150, 0};
+  calibration.lens.image_size = {size, size};
+  calibration.lens.center = {(size - 1) / 2.0, (size - 1) / 2.0};
+  calibration.lens.focal = {size / 2 / (kPi / 2), size / 2 / (kPi / 2)};
+  calibration.id = "0123456789abcdef";
+  return calibration;
+}
+
+FramePathOptions small_options() {
+  FramePathOptions options;
+  options.radiometer.grid = {10, 40, kPi / 2};
+  options.lights.count = 30;
+  options.lights.clusters = 10;
+  return options;
+}
+
+// Gives the frames it is handed, in order; the test decides when.
+class HandFedSource final : public CaptureSource {
+ public:
+  Status start() override { return {}; }
+  FrameLease wait(milliseconds timeout) noexcept override {
+    const std::int64_t end_ns = mono_now_ns() + timeout.count() * 1'000'000;
+    do {
+      const std::scoped_lock lock(mutex_);
+      if (!frames_.empty()) {
+        auto* frame = frames_.front();
+        frames_.pop_front();
+        return {frame->info, frame->codes,
+                [](void*, void* token) noexcept { static_cast<Frame*>(token)->free = true; }, this, frame};
+      }
+      std::this_thread::yield();
+    } while (mono_now_ns() < end_ns);
+    return {};
+  }
+  void stop() noexcept override { stopped = true; }
+  [[nodiscard]] SourceState state() const noexcept override { return SourceState::streaming; }
+  [[nodiscard]] std::string describe() const override { return "hand-fed"; }
+  [[nodiscard]] CaptureCounters counters() const noexcept override { return {}; }
+  [[nodiscard]] double rate_hz() const noexcept override { return 60; }
+
+  struct Frame {
+    FrameInfo info;
+    std::vector<std::byte> codes;
+    std::atomic<bool> free{false};
+  };
+  Frame* give(const FrameFormat& format, std::uint16_t code) {
+    auto frame = std::make_unique<Frame>();
+    frame->codes.resize(format.bytes());
+    for (std::size_t i = 0; i + 1 < frame->codes.size(); i += 2) std::memcpy(&frame->codes[i], &code, 2);
+    frame->info.format = format;
+    frame->info.sequence = ++sequence_;
+    frame->info.exposure_us = 10000;
+    frame->info.capture_mono_ns = frame->info.received_mono_ns = mono_now_ns();
+    const std::scoped_lock lock(mutex_);
+    owned_.push_back(std::move(frame));
+    frames_.push_back(owned_.back().get());
+    return owned_.back().get();
+  }
+  std::atomic<bool> stopped{false};
+
+ private:
+  std::mutex mutex_;
+  std::deque<Frame*> frames_;
+  std::vector<std::unique_ptr<Frame>> owned_;
+  std::uint64_t sequence_ = 0;
+};
+
+struct CountingSink final : FrameSink {
+  void offer(const FrameInfo& info, std::span<const std::byte>) noexcept override {
+    last_sequence = info.sequence;
+  }
+  std::atomic<std::uint64_t> last_sequence{0};
+};
+
+class PipelineTest : public testing::Test {
+ protected:
+  std::shared_ptr<FramePath> path(int size) {
+    return std::make_shared<FramePath>(calibration_for(size), small_options(), snapshots_);
+  }
+  SnapshotChannel::Lease published(std::uint64_t after) {
+    return snapshots_.wait_newer(after, std::chrono::seconds(20));
+  }
+
+  SnapshotChannel snapshots_{FramePath::prototype(small_options())};
+  CountingSink sink_;
+  std::shared_ptr<HandFedSource> source_ = std::make_shared<HandFedSource>();
+  Pipeline pipeline_{snapshots_, &sink_};
+};
+
+TEST_F(PipelineTest, AUniformSceneBecomesLightsOfItsWholeIlluminance) {
+  ASSERT_TRUE(pipeline_.start(source_, path(64)));
+  source_->give(kFormat, 1691);  // exp(691/150) = 100.1 cd/m²
+  const auto snapshot = published(0);
+  ASSERT_TRUE(snapshot);
+  const double radiance = std::exp(691.0 / 150);
+  // The hemisphere's 2π sr; 5e-4 is the kernel's stated error, the rest float sums.
+  EXPECT_NEAR(snapshot->measured_illuminance[0], radiance * 2 * kPi, 1e-3 * radiance * 2 * kPi);
+  Rgb sum = Rgb::Zero();
+  for (const DirectionalLight& light : snapshot->lights) sum += light.illuminance;
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], snapshot->total_illuminance[c], 1e-4 * sum[c]);
+  EXPECT_EQ(snapshot->sequence, 1u);
+  EXPECT_STREQ(snapshot->calibration_id.data(), "0123456789abcdef");
+  EXPECT_LE(snapshot->lights.size(), 10u);
+  EXPECT_LE(snapshot->received_mono_ns, snapshot->publish_mono_ns);
+}
+
+TEST_F(PipelineTest, TheSinkSeesEveryFrameAndBuffersGoBack) {
+  ASSERT_TRUE(pipeline_.start(source_, path(64)));
+  for (std::uint64_t i = 1; i <= 20; ++i) {
+    const auto* frame = source_->give(kFormat, 1500);
+    ASSERT_TRUE(published(i - 1));
+    EXPECT_TRUE(eventually([&] { return frame->free.load(); }));
+    EXPECT_EQ(sink_.last_sequence, i);
+  }
+}
+
+TEST_F(PipelineTest, FramesOfAnotherSizeAreSaidAndSurvived) {
+  ASSERT_TRUE(pipeline_.start(source_, path(64)));
+  source_->give({32, 32, PixelFormat::mono12}, 1500);
+  EXPECT_TRUE(eventually([&] { return !pipeline_.view().mismatch.empty(); }));
+  EXPECT_NE(pipeline_.view().mismatch.find("32"), std::string::npos) << pipeline_.view().mismatch;
+  source_->give(kFormat, 1500);
+  ASSERT_TRUE(published(0));
+  EXPECT_TRUE(eventually([&] { return pipeline_.view().mismatch.empty(); }));
+}
+
+TEST_F(PipelineTest, ReplacementGoesOnCountingAndStopsTheOldSource) {
+  ASSERT_TRUE(pipeline_.start(source_, path(64)));
+  source_->give(kFormat, 1500);
+  ASSERT_TRUE(published(0));
+  auto second = std::make_shared<HandFedSource>();
+  ASSERT_TRUE(pipeline_.replace(second, path(32)));
+  second->give({32, 32, PixelFormat::mono12}, 1500);
+  const auto snapshot = published(1);
+  ASSERT_TRUE(snapshot);
+  EXPECT_EQ(snapshot->number, 2u);
+  EXPECT_TRUE(source_->stopped);
+}
+
+TEST_F(PipelineTest, HeartbeatTurnsWithoutFrames) {
+  ASSERT_TRUE(pipeline_.start(source_, path(64)));
+  const std::uint64_t before = pipeline_.heartbeat();
+  EXPECT_TRUE(eventually([&] { return pipeline_.heartbeat() > before + 2; }));
+}
+
+}  // namespace
+}  // namespace lightwell
