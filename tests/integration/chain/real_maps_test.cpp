@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(Captured, RealMaps,
                                          RealMap{"night", "moonless_golf_1k.hdr"},
                                          RealMap{"studio", "studio_small_03_1k.hdr"},
                                          RealMap{"overcast", "potsdamer_platz_1k.hdr"}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& p) { return p.param.name; });
 
 }  // namespace
 }  // namespace lightwell::test
