@@ -20,6 +20,7 @@ Command add_devices(CLI::App& app);
 Command add_doctor(CLI::App& app);
 Command add_evaluate(CLI::App& app);
 Command add_filter(CLI::App& app);
+Command add_play(CLI::App& app);
 Command add_lights(CLI::App& app);
 Command add_status(CLI::App& app);
 
@@ -30,6 +31,7 @@ std::vector<Command> add_commands(CLI::App& app) {
       add_devices(app),
       add_doctor(app),
       add_filter(app),
+      add_play(app),
       add_status(app),
   };
 }
