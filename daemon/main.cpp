@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <malloc.h>
 #include <poll.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -121,6 +122,7 @@ int run(const Arguments& arguments) {
   const int signals = block_signals();
   auto daemon = Daemon::start(loaded->configuration);
   if (!daemon) return fail(daemon.error());
+  malloc_trim(0);  // calibration files are read as text, many times their tables
   spdlog::info("page: {}", (*daemon)->url());
   sd_notify(0, "READY=1");
   serve(**daemon, arguments, signals);
@@ -138,6 +140,7 @@ int main(int argc, char** argv) {
   add_options(app, arguments);
   try {
     app.parse(argc, argv);
+    mallopt(M_ARENA_MAX, 2);  // a dozen threads that allocate little need no heap each
     spdlog::set_default_logger(spdlog::stderr_logger_mt("lightwelld"));
     spdlog::set_pattern("lightwelld: %l: %v");
     return run(arguments);
