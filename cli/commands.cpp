@@ -22,6 +22,9 @@ Command add_evaluate(CLI::App& app);
 Command add_filter(CLI::App& app);
 Command add_play(CLI::App& app);
 Command add_lights(CLI::App& app);
+Command add_info(CLI::App& app);
+Command add_record(CLI::App& app);
+Command add_repair(CLI::App& app);
 Command add_status(CLI::App& app);
 
 std::vector<Command> add_commands(CLI::App& app) {
@@ -32,6 +35,9 @@ std::vector<Command> add_commands(CLI::App& app) {
       add_doctor(app),
       add_filter(app),
       add_play(app),
+      add_info(app),
+      add_record(app),
+      add_repair(app),
       add_status(app),
   };
 }

@@ -31,6 +31,7 @@ struct DaemonStatus {
   struct Recording {
     bool active = false;
     std::string file;
+    std::string directory;         // absolute, where takes are written
     std::uint64_t frames = 0;
     std::uint64_t dropped = 0;  // frames the disk was too slow for
     std::uint64_t bytes = 0;

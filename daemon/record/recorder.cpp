@@ -46,15 +46,19 @@ std::shared_ptr<Recorder::Session> Recorder::session() const {
 
 Status Recorder::start(const std::string& file, const RecordingHeader& header) {
   if (Status status = check_take_name(file); !status) return status;
+  return start_at(directory_ / file, header);
+}
+
+Status Recorder::start_at(const std::filesystem::path& path, const RecordingHeader& header) {
   const std::lock_guard one_at_a_time(control_);
   auto previous = session();
   if (previous && previous->active())
     return Error{ErrorKind::usage, "recording: " + previous->file() + " is being written; stop it first"};
-  auto writer = RecordingWriter::create(directory_ / file, header);
+  auto writer = RecordingWriter::create(path, header);
   if (!writer) return writer.error();
   constexpr std::size_t kFewest = 4, kMost = 256;
   const std::size_t frames = std::clamp(ring_bytes_ / header.format.bytes(), kFewest, kMost);
-  auto next = std::make_shared<Session>(file, header.format, frames, std::move(*writer));
+  auto next = std::make_shared<Session>(path.filename().string(), header.format, frames, std::move(*writer));
   {
     const std::lock_guard lock(session_mutex_);
     session_ = next;

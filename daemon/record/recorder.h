@@ -31,6 +31,8 @@ class Recorder final : public FrameSink {
   // file: a plain name ending in .mkv, not there yet. usage: another name, or a take is being written;
   // failed: as RecordingWriter::create. Frames of another format than the header's end the take. Any thread.
   Status start(const std::string& file, const RecordingHeader& header);
+  // The same at a path of the caller's choice, for commands. Any name.
+  Status start_at(const std::filesystem::path& path, const RecordingHeader& header);
   // Writes what waits, closes the take; says why where it is not whole, also where it has ended by itself.
   // usage: none was begun. Any thread.
   Status stop();

@@ -80,6 +80,7 @@ std::string status_json(const DaemonStatus& status) {
       {"recording",
        {{"active", recording.active},
         {"file", recording.file},
+        {"directory", recording.directory},
         {"frames", recording.frames},
         {"dropped", recording.dropped},
         {"bytes", recording.bytes},

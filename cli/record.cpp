@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/record.h"
+
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+
+namespace lightwell::cli {
+namespace {
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
+
+void print(const RecordOptions& options, const Recorded& recorded) {
+  const std::string file = recorded.file.string();
+  if (options.json) {
+    const nlohmann::ordered_json json = {{"schema", "lightwell.record/1"},
+                                         {"file", file},
+                                         {"frames", recorded.frames},
+                                         {"dropped", recorded.dropped},
+                                         {"bytes", recorded.bytes}};
+    std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    return;
+  }
+  std::printf("%s: %llu frames, %.1f MB", file.c_str(), static_cast<unsigned long long>(recorded.frames),
+              static_cast<double>(recorded.bytes) * 1e-6);
+  if (recorded.dropped > 0) std::printf(", %llu dropped", static_cast<unsigned long long>(recorded.dropped));
+  std::printf("%s\n", recorded.file == options.out ? "" : " (in the daemon's record directory)");
+}
+
+int run(const RecordOptions& options) {
+  constexpr double kWeek = 7 * 24 * 3600;
+  if (!(options.seconds > 0 && options.seconds <= kWeek))
+    return fail(usage("--seconds is out of range: above 0, up to 604800 (a week)"));
+  if (options.out.filename().empty())
+    return fail(usage("--out " + options.out.string() + " is not a file's name"));
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+  const auto recorded = options.source.empty() ? record_through_daemon(options, interrupted)
+                                               : record_from_source(options, interrupted);
+  if (!recorded) return fail(recorded.error());
+  print(options, *recorded);
+  return 0;
+}
+
+}  // namespace
+
+Command add_record(CLI::App& app) {
+  struct Arguments {
+    RecordOptions options;
+    std::string out, codec = "raw";
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  RecordOptions& options = arguments->options;
+  CLI::App* command =
+      app.add_subcommand("record", "Record a take, through the running daemon or from a source");
+  command->footer(
+      "Example: lightwell record --seconds 10 --out take.mkv\n"
+      "         lightwell record --seconds 10 --out take.mkv --source aravis:127.0.0.1 --codec ffv1");
+  command->add_option("--seconds", options.seconds, "How long; Ctrl-C ends earlier and keeps the take")
+      ->required();
+  command->add_option("--out", arguments->out, "The take (.mkv); never overwrites")->required();
+  command->add_option("--source", options.source,
+                      "Record from here, without a daemon: aravis:ADDRESS, recording:FILE");
+  command->add_option("--codec", arguments->codec, "raw, or ffv1: a third of the size, up to a core of work")
+      ->check(CLI::IsMember({"raw", "ffv1"}));
+  command->add_option("--calibration", options.calibration, "Folder to attach to a take made with --source");
+  command->add_option("--daemon", options.daemon, "ADDRESS:PORT of the daemon");
+  command->add_flag("--json", options.json, "Machine-readable result on stdout");
+  return {command, [arguments] {
+            arguments->options.out = arguments->out;
+            arguments->options.codec =
+                recording_codec_from_name(arguments->codec).value_or(RecordingCodec::raw);
+            return run(arguments->options);
+          }};
+}
+
+}  // namespace lightwell::cli
