@@ -9,6 +9,11 @@ namespace {
 
 constexpr std::size_t kRecentLayers = 4;  // two keyframes in use, two to spare
 
+bool same(const DiscLight& a, const DiscLight& b) {
+  return a.direction == b.direction && a.angular_radius_rad == b.angular_radius_rad &&
+         (a.illuminance == b.illuminance).all();
+}
+
 }  // namespace
 
 FrameGenerator::FrameGenerator(std::shared_ptr<const Scene> scene, const ProbeModel& model)
@@ -22,6 +27,8 @@ FrameGenerator::FrameGenerator(std::shared_ptr<const Scene> scene, const ProbeMo
     const Layer made = scene_->layer(id);
     lasting_[id] = {projector_.project(made), hemisphere_illuminance(made.image)};
   }
+  // The first keyframes, and with them the table that later ones are interpolated by.
+  for (const SceneMoment::Part& part : scene_->at(0, 1e-3).parts) layer(part.layer);
 }
 
 const FrameGenerator::Projected& FrameGenerator::layer(std::int64_t id) {
@@ -34,8 +41,18 @@ const FrameGenerator::Projected& FrameGenerator::layer(std::int64_t id) {
   return recent_.front().second;
 }
 
+void FrameGenerator::compose(const SceneMoment& moment) {
+  const bool same_base = moment.parts == mixed_;
+  if (same_base &&
+      std::equal(moment.lights.begin(), moment.lights.end(), lights_.begin(), lights_.end(), same))
+    return;
+  if (!same_base) mix(moment);
+  std::copy(base_.begin(), base_.end(), plane_.begin());
+  for (const DiscLight& light : moment.lights) projector_.add_disc(light, plane_);
+  lights_ = moment.lights;
+}
+
 void FrameGenerator::mix(const SceneMoment& moment) {
-  if (moment.parts == mixed_) return;
   std::fill(base_.begin(), base_.end(), 0.0f);
   for (const SceneMoment::Part& part : moment.parts) {
     const std::vector<float>& source = layer(part.layer).plane;
@@ -45,11 +62,6 @@ void FrameGenerator::mix(const SceneMoment& moment) {
   mixed_ = moment.parts;
 }
 
-void FrameGenerator::add_lights(const SceneMoment& moment) {
-  std::copy(base_.begin(), base_.end(), plane_.begin());
-  for (const DiscLight& light : moment.lights) projector_.add_disc(light, plane_);
-}
-
 Rgbd FrameGenerator::seen(const Rgbd& colour) const {
   return projector_.bayer() ? colour : Rgbd(Rgbd::Constant(luminance(colour)));
 }
@@ -57,8 +69,7 @@ Rgbd FrameGenerator::seen(const Rgbd& colour) const {
 FrameTruth FrameGenerator::render(double end_s, double exposure_us, std::uint64_t frame_index,
                                   PixelFormat format, std::span<std::byte> out) {
   const SceneMoment moment = scene_->at(end_s - exposure_us * 1e-6, end_s);
-  mix(moment);
-  add_lights(moment);
+  compose(moment);
   sensor_.encode(plane_, exposure_us, frame_index, format, out);
 
   FrameTruth truth;

@@ -43,8 +43,8 @@ class FrameGenerator {
     Rgbd illuminance;
   };
   const Projected& layer(std::int64_t id);
+  void compose(const SceneMoment& moment);
   void mix(const SceneMoment& moment);
-  void add_lights(const SceneMoment& moment);
   [[nodiscard]] Rgbd seen(const Rgbd& colour) const;
 
   std::shared_ptr<const Scene> scene_;
@@ -55,6 +55,7 @@ class FrameGenerator {
   std::list<std::pair<std::int64_t, Projected>> recent_;  // newest first
   std::vector<SceneMoment::Part> mixed_;                  // what base_ holds
   std::vector<float> base_;
+  std::vector<DiscLight> lights_;  // what plane_ holds beside base_
   std::vector<float> plane_;
 };
 

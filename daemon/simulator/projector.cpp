@@ -14,6 +14,8 @@ namespace {
 // In half widths of the tent. n rays to one leave a pattern on an even sky of at most 2/(π n)² an axis; with
 // the margin in scatter n is about 4.5, the pattern 1 %: two codes, and nothing in sum.
 constexpr double kRaySpacing = 1.0 / 4;
+// Of a disc that moves, every frame: the sunflower's rays are spread more evenly than a grid meets pixels.
+constexpr double kDiscSpacing = 1.0 / 2;
 
 // RGGB: 0 red, 1 green, 2 blue.
 int bayer_channel(int x, int y) {
@@ -118,7 +120,7 @@ void Projector::add_ray(const Vec3d& direction, const Rgbd& illuminance, std::sp
 
 void Projector::add_disc(const DiscLight& light, std::span<float> plane) const {
   const double radius_px = light.angular_radius_rad * lens_.focal.maxCoeff();
-  const double spacing = kRaySpacing * (bayer_ ? 2 : 1);
+  const double spacing = kDiscSpacing * (bayer_ ? 2 : 1);
   // At least 64 rays: a small disc at the horizon is cut by them.
   const int count =
       static_cast<int>(std::clamp(kPi * radius_px * radius_px / (spacing * spacing), 64.0, 1e5));

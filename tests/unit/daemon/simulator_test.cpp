@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 #include <random>
 
@@ -327,6 +328,35 @@ TEST(EnvironmentFrames, BlackIsBlack) {
   for (std::size_t i = 0; i < 31 * 17; ++i)
     EXPECT_NEAR(code_at(frame, PixelFormat::mono12, i), 64 + model.calibration.flat.offset_codes[i], 0.51);
 }
+
+// Sun, windows, night, studio, overcast: what the camera shows is what the image holds.
+class RealMaps : public testing::TestWithParam<const char*> {};
+
+TEST_P(RealMaps, DecodeToTheirTotalPerChannel) {
+  const std::filesystem::path file = std::filesystem::path(LIGHTWELL_TEST_DATA) / "env" / GetParam();
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is absent";
+  std::vector<std::string> messages;
+  const auto scene = make_environment_scene({file}, 5, messages);
+  ASSERT_TRUE(scene) << scene.error().message;
+  const Rgbd exact = hemisphere_illuminance((*scene)->layer(0).image);
+  for (const PixelFormat format : {PixelFormat::mono12, PixelFormat::bayer_rg12}) {
+    const ProbeModel model = probe(**scene, 640, 480, format, 1);
+    FrameGenerator generator(*scene, model);
+    std::vector<std::byte> frame(model.format.bytes());
+    const FrameTruth truth = generator.render(0.5, 10000, 0, format, frame);
+    expect_close(truth.total_illuminance, is_bayer(format) ? exact : Rgbd(Rgbd::Constant(luminance(exact))),
+                 1e-9, "truth");
+    // One code is half a per cent of a pixel, and a sun is few pixels; the rest averages out.
+    expect_close(decoded_illuminance(model, frame, 10000), truth.total_illuminance, 0.01,
+                 std::string(name(format)));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Environments, RealMaps,
+                         testing::Values("StinsonBeach.hdr", "noon_grass_1k.hdr", "rooitou_park_1k.hdr",
+                                         "st_fagans_interior_1k.hdr", "dikhololo_night_1k.hdr",
+                                         "studio_small_03_1k.hdr", "potsdamer_platz_1k.hdr",
+                                         "StageEnvLatLong.exr", "spot1Lux_1k.hdr"));
 
 // ---- sensor ----
 
