@@ -40,5 +40,21 @@ TEST(AtomicFile, RefusesAFileBeyondTheLimit) {
   EXPECT_EQ(read_text_file(folder.path() / "big", 99).error().kind, ErrorKind::bad_input);
 }
 
+TEST(AtomicFileWriter, NothingStandsUnderTheNameBeforeCommitAndNothingIsLeftWithoutIt) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.jsonl";
+  {
+    auto writer = AtomicFileWriter::create(file).value();
+    ASSERT_TRUE(writer.append("one\n"));
+    EXPECT_FALSE(std::filesystem::exists(file));
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  auto writer = AtomicFileWriter::create(file).value();
+  ASSERT_TRUE(writer.append("one\n"));
+  ASSERT_TRUE(writer.append("two\n"));
+  ASSERT_TRUE(writer.commit());
+  EXPECT_EQ(read_text_file(file).value(), "one\ntwo\n");
+}
+
 }  // namespace
 }  // namespace lightwell
