@@ -170,6 +170,9 @@ DaemonStatus Daemon::status() const {
     status.frame_age_ms = static_cast<double>(now_ns - newest->capture_mono_ns) * 1e-6;
   const Recorder::Stats take = parts_->recorder.stats();
   status.recording = {take.active, take.file, take.frames, take.dropped, take.bytes, take.error};
+  std::error_code ignored;
+  status.recording.directory =
+      std::filesystem::absolute(parts_->configuration.record.directory, ignored).string();
   status.alarm = alarm_for(status);
   return status;
 }
