@@ -36,7 +36,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr ev_ssize_t kMaxBody = 64 << 10;  // the largest request is a file name
+constexpr std::size_t kMaxBody = 64 << 10;  // the largest request is a file name
+// Up to here a body is read before it is refused, so that the answer arrives; beyond, libevent answers 413
+// and closes while the client still sends, which may cost it the answer.
+constexpr ev_ssize_t kMaxReadBody = 1 << 20;
 constexpr ev_ssize_t kMaxHeaders = 16 << 10;
 constexpr int kIdleTimeout_s = 30;
 constexpr int kPictureSize = 560;       // pixels; sharp on a phone, a few milliseconds to make
@@ -84,6 +87,8 @@ const char* reason(int status) {
       return "Method Not Allowed";
     case 409:
       return "Conflict";
+    case 413:
+      return "Content Too Large";
     case 503:
       return "Service Unavailable";
     default:
@@ -225,7 +230,7 @@ Status WebServer::Impl::listen(const HostPort& address) {
   base = event_base_new();
   http = evhttp_new(base);
   // libevent answers 413 and 400 beyond these.
-  evhttp_set_max_body_size(http, kMaxBody);
+  evhttp_set_max_body_size(http, kMaxReadBody);
   evhttp_set_max_headers_size(http, kMaxHeaders);
   evhttp_set_timeout(http, kIdleTimeout_s);
   // All that libevent knows come to handle(), which answers 405 itself.
@@ -352,6 +357,8 @@ std::function<Answer()> WebServer::Impl::find(const std::string& path) {
 void WebServer::Impl::handle(evhttp_request* request) {
   ++counters.requests;
   if (const auto refused = refuse(request)) return send(request, *refused);
+  if (evbuffer_get_length(evhttp_request_get_input_buffer(request)) > kMaxBody)
+    return send(request, error_answer(413, "the request's body is larger than 64 KiB"));
   const evhttp_uri* uri = evhttp_request_get_evhttp_uri(request);
   const char* given = uri == nullptr ? nullptr : evhttp_uri_get_path(uri);
   const std::string path = given == nullptr ? "" : given;

@@ -27,6 +27,10 @@ std::size_t StreamClients::pending(const Client& client) {
 
 void StreamClients::on_close(evhttp_connection* connection, void* context) {
   auto& clients = static_cast<Client*>(context)->owner->clients_;
+  // Where the client left, libevent takes the unfinished request off the connection and leaves it to us:
+  // ending it frees it. Where the server stops, it still belongs to the connection and goes with it.
+  evhttp_request* request = static_cast<Client*>(context)->request;
+  if (evhttp_request_get_connection(request) == nullptr) evhttp_send_reply_end(request);
   clients.remove_if([connection](const Client& client) { return client.connection == connection; });
 }
 
