@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+
+#include "interface/atomic_file.h"
+#include "tests/integration/commands/command_fixture.h"
+
+namespace lightwell {
+namespace {
+
+using test::ProcessResult;
+using testing::HasSubstr;
+
+class BadInput : public test::CommandTest {
+ protected:
+  // Ends with the code, one line on stderr that names what it must, nothing on stdout, nothing written.
+  void expect(const std::vector<std::string>& arguments, int code, const std::string& names) {
+    const ProcessResult run = lightwell(arguments);
+    EXPECT_EQ(run.exit_code, code) << arguments[0] << ": " << run.err;
+    EXPECT_THAT(run.err, HasSubstr(names));
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_EQ(run.out, "");
+    EXPECT_FALSE(std::filesystem::exists(path("o.json")));
+    for (const auto& entry : std::filesystem::directory_iterator(path("")))
+      EXPECT_EQ(entry.path().string().find("o.json"), std::string::npos) << "left behind: " << entry.path();
+  }
+  void expect_lights(const std::string& environment, const std::vector<std::string>& extra, int code,
+                     const std::string& names) {
+    std::vector<std::string> words = {"lights", environment, "--out", path("o.json")};
+    words.insert(words.end(), extra.begin(), extra.end());
+    expect(words, code, names);
+  }
+};
+
+TEST_F(BadInput, ValuesOutOfRangeAreWrongUsage) {
+  const std::string sky = path("sky.exr");
+  for (const char* count : {"0", "-1", "100001", "99999999999999"})
+    expect_lights(sky, {"--count", count}, 2, "1 to 100000");
+  expect_lights(sky, {"--count", "many"}, 2, "--count");
+  expect_lights(sky, {}, 2, "--count");
+  for (const char* method : {"structured", "kollig-keller", "penrose", "nonsense", ""})
+    expect_lights(sky, {"--count", "4", "--method", method}, 2,
+                  "best, standard, havran, median-cut, uniform");
+  expect_lights(sky, {"--count", "4", "--seed", "-1"}, 2, "--seed");
+  expect_lights(sky, {"--count", "4", "--rotate-y", "nan"}, 2, "--rotate-y");
+  expect_lights(sky, {"--count", "4", "--rate", "0"}, 2, "--rate");
+  expect_lights(sky, {"--count", "4", "--temporal", "best"}, 2, "fir, none");
+  expect_lights(sky, {"--count", "4", "--temporal", "fir"}, 2, "sequence");
+  expect_lights(path("e%d.exr"), {"--count", "4", "--temporal", "fir"}, 2, "standard, havran");
+  expect_lights(sky, {"--count", "4", "--sphere", "--hemisphere"}, 2, "--hemisphere");
+  expect_lights(sky, {"--count", "4", "--frobnicate"}, 2, "--frobnicate");
+  expect({"evaluate", sky}, 2, "lights");
+  expect({"frobnicate"}, 2, "");
+}
+
+TEST_F(BadInput, ImagesThatCannotBeReadAreBadInput) {
+  const std::string good = read_text_file(path("sky.exr")).value();
+  ASSERT_TRUE(write_file_atomically(path("cut.exr"), good.substr(0, good.size() / 2)));
+  ASSERT_TRUE(write_file_atomically(path("empty.exr"), ""));
+  ASSERT_TRUE(write_file_atomically(path("text.hdr"), "not an image"));
+  ASSERT_TRUE(write_file_atomically(path("cut.hdr"), "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\nab"));
+  for (const char* name : {"absent.exr", "cut.exr", "empty.exr", "text.hdr", "cut.hdr", ""}) {
+    expect_lights(path(name), {"--count", "4"}, 3, path(name));
+    expect({"evaluate", path(name), path("l.json")}, 3, path(name));
+  }
+}
+
+TEST_F(BadInput, SequencesThatAreNotWholeAreBadInput) {
+  expect_lights(path("none_%04d.exr"), {"--count", "4"}, 3, "no frame");
+  expect_lights(path("absent/e_%d.exr"), {"--count", "4"}, 3, "folder");
+  expect_lights(path("a%d_%d.exr"), {"--count", "4"}, 3, "one %d");
+  for (const char* frame : {"s1.exr", "s2.exr", "s4.exr"})
+    ASSERT_TRUE(write_environment(path(frame), sky(8, 4)));
+  expect_lights(path("s%d.exr"), {"--count", "4"}, 3, "frame 3");
+  ASSERT_TRUE(write_environment(path("s3.exr"), sky(10, 4)));
+  expect_lights(path("s%d.exr"), {"--count", "4"}, 3, "s3.exr");
+}
+
+TEST_F(BadInput, LightSetsThatAreNoneAreBadInput) {
+  const std::string sky = path("sky.exr");
+  expect({"evaluate", sky, path("absent.json")}, 3, "absent.json");
+  expect({"evaluate", sky, path("")}, 3, "directory");
+  ASSERT_TRUE(write_file_atomically(path("bad.json"), "{\"schema\": 1}"));
+  expect({"evaluate", sky, path("bad.json")}, 3, "schema");
+  ASSERT_TRUE(write_file_atomically(path("bad.json"), "{"));
+  expect({"evaluate", sky, path("bad.json")}, 3, "JSON");
+}
+
+TEST_F(BadInput, AMissingOutputFolderIsAFailure) {
+  expect({"lights", path("sky.exr"), "--count", "4", "--out", path("absent/lights.json")}, 1,
+         "absent/lights.json");
+  expect({"lights", path("sky%d.exr"), "--count", "4", "--out", path("o.json")}, 3, "no frame");
+  ASSERT_TRUE(write_environment(path("s1.exr"), sky(8, 4)));
+  expect({"lights", path("s%d.exr"), "--count", "4", "--out", path("absent/l.jsonl")}, 1, "absent/l.jsonl");
+}
+
+TEST_F(BadInput, NotFiniteAndNegativeValuesCountAsZeroAndAreSaid) {
+  LatLongImage image = sky(8, 4);
+  image.pixels[3][0] = std::numeric_limits<float>::quiet_NaN();
+  image.pixels[4][1] = std::numeric_limits<float>::infinity();
+  image.pixels[5][2] = -1;
+  ASSERT_TRUE(write_environment(path("odd.exr"), image));
+  const auto run = lightwell({"lights", path("odd.exr"), "--count", "4", "--out", path("l.json"), "--json"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.err, HasSubstr(path("odd.exr") +
+                                 ": 2 values are NaN or infinite, 1 values are negative; read as 0"));
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1);
+}
+
+}  // namespace
+}  // namespace lightwell

@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "interface/atomic_file.h"
+#include "interface/light_set_io.h"
+#include "lighting/decompose.h"
+#include "lighting/lat_long_image.h"
+#include "tests/integration/commands/command_fixture.h"
+
+namespace lightwell {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Commands : public test::CommandTest {};
+
+double relative(const Rgbd& a, const Rgbd& b) {
+  return (a - b).abs().maxCoeff() / b.maxCoeff();
+}
+
+Rgbd sum(const LightSet& set) {
+  Rgbd total = Rgbd::Zero();
+  for (const auto& light : set.lights) total += light.illuminance.cast<double>();
+  return total;
+}
+
+TEST_F(Commands, EveryMethodWritesTheSetItPromisesOnBothCoverages) {
+  for (const Method method : kMethods)
+    for (const bool sphere : {false, true}) {
+      const auto run =
+          lightwell({"lights", path("sky.exr"), "--count", "20", "--method", std::string(name(method)),
+                     sphere ? "--sphere" : "--hemisphere", "--out", path("l.json"), "--json"});
+      ASSERT_EQ(run.exit_code, 0) << run.err;
+      EXPECT_EQ(json::parse(run.out)["count"], 20);
+      const LightSet set = read_light_set(path("l.json")).value();
+      EXPECT_EQ(set.method, name(method));
+      EXPECT_EQ(set.coverage, sphere ? Coverage::sphere : Coverage::hemisphere);
+      EXPECT_EQ(set.lights.size(), 20u);
+      const Rgbd total = total_illuminance(polar_map_from_lat_long(sky(48, 24), !sphere));
+      EXPECT_LT(relative(set.total_illuminance.cast<double>(), total), 1e-6);  // float rounding
+      // The samplers' lights have the colour of the place they hit: luminance alone is exact.
+      if (sampler_of(method)) {
+        EXPECT_NEAR(luminance(sum(set)) / luminance(total), 1, 1e-5);
+      } else {
+        EXPECT_LT(relative(sum(set), total), 1e-5);  // float rounding of 20 lights
+      }
+      for (const auto& light : set.lights) EXPECT_GE(light.direction.y(), sphere ? -1 : 0);
+    }
+}
+
+TEST_F(Commands, BestIsTheDefaultAndBeatsTheOthers) {
+  double error[2] = {};
+  int i = 0;
+  for (const std::vector<std::string>& extra : {std::vector<std::string>{}, {"--method", "median-cut"}}) {
+    std::vector<std::string> words = {"lights", path("sky.exr"), "--count", "16", "--out", path("l.json")};
+    words.insert(words.end(), extra.begin(), extra.end());
+    ASSERT_EQ(lightwell(words).exit_code, 0);
+    const auto run = lightwell({"evaluate", path("sky.exr"), path("l.json"), "--json"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const json result = json::parse(run.out);
+    EXPECT_GE(result["ms"], 0);
+    EXPECT_GT(result["irradiance_rel_rmse"], 0);
+    error[i++] = result["shadow_rel_rmse"];
+  }
+  EXPECT_LT(error[0], error[1]);
+}
+
+TEST_F(Commands, TurningTheImageTurnsItsLight) {
+  ASSERT_EQ(
+      lightwell({"lights", path("sky.exr"), "--count", "1", "--rotate-y", "-30", "--out", path("l.json")})
+          .exit_code,
+      0);
+  const LightSet set = read_light_set(path("l.json")).value();
+  const double azimuth =
+      spherical_from_direction(set.lights[0].direction.cast<double>()).lambda_rad * 180 / kPi;
+  // The sun's azimuth of 30° comes to 0; pixels are 7.5° wide and its edge is cut by them.
+  EXPECT_NEAR(std::remainder(azimuth, 360), 0, 3.75);
+  const auto turned = json::parse(
+      lightwell({"evaluate", path("sky.exr"), path("l.json"), "--rotate-y", "-30", "--json"}).out);
+  const auto straight = json::parse(lightwell({"evaluate", path("sky.exr"), path("l.json"), "--json"}).out);
+  EXPECT_LT(turned["shadow_rel_rmse"].get<double>(), straight["shadow_rel_rmse"].get<double>());
+}
+
+TEST_F(Commands, TheSameCallGivesTheSameBytes) {
+  for (const char* file : {"a.json", "b.json"})
+    ASSERT_EQ(lightwell({"lights", path("sky.exr"), "--count", "33", "--out", path(file)}).exit_code, 0);
+  EXPECT_EQ(read_text_file(path("a.json")).value(), read_text_file(path("b.json")).value());
+}
+
+TEST_F(Commands, ASequenceGivesALineAFrameInOrder) {
+  for (int frame = 8; frame < 20; ++frame)
+    ASSERT_TRUE(write_environment(
+        path("env_00" + std::string(frame < 10 ? "0" : "") + std::to_string(frame) + ".exr"),
+        sky(48, 24, 10.0 * (frame - 8))));
+  const auto run = lightwell({"lights", path("env_%04d.exr"), "--count", "30", "--temporal", "none", "--out",
+                              path("l.jsonl"), "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(json::parse(run.out)["frames"], 12);
+  std::istringstream lines(read_text_file(path("l.jsonl")).value());
+  std::string line;
+  for (int frame = 0; frame < 12; ++frame) {
+    ASSERT_TRUE(std::getline(lines, line));
+    const LightSet one = take_lights(light_set_from_json(line, "line").value(), 1);
+    const double azimuth =
+        spherical_from_direction(one.lights[0].direction.cast<double>()).lambda_rad * 180 / kPi;
+    EXPECT_NEAR(std::remainder(azimuth - 10.0 * frame, 360), 0, 6)
+        << frame;  // pixels of 7.5°, and the sky's own share of the mean
+  }
+  EXPECT_FALSE(std::getline(lines, line));
+}
+
+TEST_F(Commands, TheFilterCarriesStateThroughASequence) {
+  for (int frame = 1; frame <= 20; ++frame) {
+    LatLongImage image = sky(48, 24);
+    const float level = frame <= 5 ? 1.0f : 3.0f;
+    for (Rgb& pixel : image.pixels) pixel *= level;
+    ASSERT_TRUE(write_environment(path("e" + std::to_string(frame) + ".exr"), image));
+  }
+  const auto run = lightwell({"lights", path("e%d.exr"), "--count", "50", "--method", "havran", "--rate",
+                              "25", "--out", path("l.jsonl"), "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(json::parse(run.out)["delay_frames"], 4.0);
+  std::istringstream lines(read_text_file(path("l.jsonl")).value());
+  std::vector<double> total;
+  for (std::string line; std::getline(lines, line);)
+    total.push_back(luminance(sum(light_set_from_json(line, "line").value())));
+  ASSERT_EQ(total.size(), 20u);
+  EXPECT_NEAR(total[4] / total[0], 1, 1e-4);   // constant light passes: float rounding of 50 lights
+  EXPECT_NEAR(total[19] / total[0], 3, 3e-4);  // and so it does after the step
+  EXPECT_LT(total[6], 2 * total[0]);           // two frames after the step it is delayed by four
+}
+
+TEST_F(Commands, BlackImagesGiveLightsOfNoPower) {
+  ASSERT_TRUE(write_environment(path("black.exr"), {7, 5, std::vector<Rgb>(35, Rgb::Zero())}));
+  for (const Method method : kMethods) {
+    const auto run = lightwell({"lights", path("black.exr"), "--count", "9", "--method",
+                                std::string(name(method)), "--out", path("l.json")});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const auto evaluated = lightwell({"evaluate", path("black.exr"), path("l.json"), "--json"});
+    ASSERT_EQ(evaluated.exit_code, 0);
+    EXPECT_EQ(json::parse(evaluated.out)["shadow_rel_rmse"], 0);
+  }
+}
+
+TEST_F(Commands, HelpHasAnExample) {
+  for (const char* command : {"lights", "evaluate"}) {
+    const auto run = lightwell({command, "--help"});
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_THAT(run.out, HasSubstr("Example: lightwell " + std::string(command)));
+  }
+}
+
+}  // namespace
+}  // namespace lightwell
