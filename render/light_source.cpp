@@ -3,7 +3,10 @@
 #include "render/light_source.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+
+#include "interface/environment_io.h"
 
 namespace lightwell::render {
 namespace {
@@ -12,6 +15,34 @@ class FixedLights final : public LightSource {
  public:
   explicit FixedLights(LightSet lights) { lights_ = std::move(lights); }
   Result<bool> update(int frame, std::chrono::milliseconds /*wait*/) override { return frame == 0; }
+};
+
+class EnvironmentLights final : public LightSource {
+ public:
+  EnvironmentLights(EnvironmentOptions options, LatLongImage image)
+      : options_(std::move(options)), image_(std::move(image)) {}
+
+  Result<bool> update(int frame, std::chrono::milliseconds /*wait*/) override {
+    const double turn_rad = std::remainder(frame * options_.spin_deg, 360.0) * kPi / 180;
+    if (made_ && turn_rad == turn_rad_) return false;
+    const PolarMap map =
+        polar_map_from_lat_long(image_, options_.coverage == Coverage::hemisphere, turn_rad);
+    const auto set = decompose(map, options_.method, options_.lights);
+    if (!set) return Error{set.error().kind, options_.file.string() + ": " + set.error().message};
+    lights_ = options_.max_lights > 0 ? take_lights(*set, static_cast<std::size_t>(options_.max_lights)) : *set;
+    turn_rad_ = turn_rad;
+    made_ = true;
+    return true;
+  }
+  [[nodiscard]] const LatLongImage* environment() const override { return &image_; }
+  [[nodiscard]] double environment_turn_rad() const override { return turn_rad_; }
+  [[nodiscard]] int environment_version() const override { return 1; }
+
+ private:
+  EnvironmentOptions options_;
+  LatLongImage image_;
+  double turn_rad_ = 0;
+  bool made_ = false;
 };
 
 class LiveLights final : public LightSource {
@@ -24,8 +55,10 @@ class LiveLights final : public LightSource {
         environment_reader_(std::move(environment)) {}
 
   Result<bool> update(int /*frame*/, std::chrono::milliseconds wait) override {
-    if (environment_reader_ && environment_reader_->take(environment_frame_, std::chrono::milliseconds(0)))
+    if (environment_reader_ && environment_reader_->take(environment_frame_, std::chrono::milliseconds(0))) {
       environment_ = lat_long_from_polar(environment_frame_.map);
+      ++environment_version_;
+    }
     const bool arrived = reader_->take(frame_, wait);
     if (arrived) lights_ = take_lights(frame_.light_set(), max_lights_);
     tell(arrived);
@@ -33,7 +66,7 @@ class LiveLights final : public LightSource {
   }
 
   [[nodiscard]] bool ready() const override { return reader_->age().has_value(); }
-  [[nodiscard]] bool changes() const override { return true; }
+  [[nodiscard]] int environment_version() const override { return environment_version_; }
   [[nodiscard]] std::optional<std::chrono::nanoseconds> age() const override { return reader_->age(); }
   [[nodiscard]] const LatLongImage* environment() const override {
     return environment_.pixels.empty() ? nullptr : &environment_;
@@ -62,6 +95,7 @@ class LiveLights final : public LightSource {
   LightFrame frame_;
   EnvironmentFrame environment_frame_;
   LatLongImage environment_;
+  int environment_version_ = 0;
   State told_ = State::unknown;
 };
 
@@ -70,6 +104,15 @@ class LiveLights final : public LightSource {
 std::unique_ptr<LightSource> fixed_lights(const LightSet& lights, int max_lights) {
   return std::make_unique<FixedLights>(
       max_lights > 0 ? take_lights(lights, static_cast<std::size_t>(max_lights)) : lights);
+}
+
+Result<std::unique_ptr<LightSource>> environment_lights(const EnvironmentOptions& options) {
+  auto environment = read_environment(options.file);
+  if (!environment) return environment.error();
+  if (const std::string repaired = environment->repaired(options.file); !repaired.empty())
+    std::fprintf(stderr, "lightwell-render: %s\n", repaired.c_str());
+  return std::unique_ptr<LightSource>(
+      std::make_unique<EnvironmentLights>(options, std::move(environment->image)));
 }
 
 Result<std::unique_ptr<LightSource>> live_lights(const LiveOptions& options) {

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "interface/dds_topics.h"
+#include "lighting/decompose.h"
 #include "lighting/lat_long_image.h"
 #include "lighting/light_set.h"
 
@@ -26,8 +28,8 @@ class LightSource {
   [[nodiscard]] virtual const LatLongImage* environment() const { return nullptr; }
   // Turn of that picture about +Y (azimuth λ comes to λ + angle).
   [[nodiscard]] virtual double environment_turn_rad() const { return 0; }
-  // True where the lights may differ from frame to frame.
-  [[nodiscard]] virtual bool changes() const { return false; }
+  // Another number for another picture; 0: none yet.
+  [[nodiscard]] virtual int environment_version() const { return 0; }
   // Time since the light arrived, for live light.
   [[nodiscard]] virtual std::optional<std::chrono::nanoseconds> age() const { return std::nullopt; }
 
@@ -37,6 +39,18 @@ class LightSource {
 
 // A light set that stays as it is. max_lights: fold to so many; 0: all.
 std::unique_ptr<LightSource> fixed_lights(const LightSet& lights, int max_lights);
+
+struct EnvironmentOptions {
+  std::filesystem::path file;
+  int lights = 72;
+  Method method = Method::best;
+  Coverage coverage = Coverage::hemisphere;
+  double spin_deg = 0;  // more every frame
+  int max_lights = 0;   // fold to so many; 0: all
+};
+// Lights made of an image; where it spins, anew for every frame. Says on stderr what had to be repaired.
+// bad_input: the image.
+Result<std::unique_ptr<LightSource>> environment_lights(const EnvironmentOptions& options);
 
 struct LiveOptions {
   DdsOptions dds;

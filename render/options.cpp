@@ -11,7 +11,7 @@ namespace lightwell::render {
 namespace {
 
 constexpr const char* kExample =
-    "Example: lightwell-render --scene stage.gltf --light-set lights.json --headless --out relit.png\n"
+    "Example: lightwell-render --scene stage.gltf --environment studio.exr --headless --out relit.png\n"
     "\n"
     "An EXR holds linear radiance in the light's own units, row 0 at the top, one sample at each pixel's "
     "centre; a PNG\n"
@@ -45,6 +45,7 @@ Parsed parse_options(int argc, const char* const* argv) {
   std::string size = "640x480";
   std::string background = "none";
   std::string tone_map = "reinhard";
+  std::string method = std::string(name(options.method));
   std::vector<std::string> outputs;
   CLI::App app{"Renders a scene under measured light, with its shadows: off-screen or in a window",
                "lightwell-render"};
@@ -57,6 +58,23 @@ Parsed parse_options(int argc, const char* const* argv) {
       ->capture_default_str()
       ->needs(live);
   app.add_option("--light-set", options.light_set, "light from a lights.json")->excludes(live);
+  auto* environment = app.add_option("--environment", options.environment,
+                                     "light from a latitude–longitude image, EXR or Radiance HDR")
+                          ->excludes(live)
+                          ->excludes("--light-set");
+  app.add_option("--lights", options.lights, "lights to make of the environment")
+      ->check(CLI::Range(1, kMostLights))
+      ->capture_default_str()
+      ->needs(environment);
+  app.add_option("--method", method, "how to make them: " + method_names())
+      ->capture_default_str()
+      ->needs(environment);
+  auto* hemisphere =
+      app.add_flag("--hemisphere", "of its upper half, what the probe sees (default)")->needs(environment);
+  auto* sphere = app.add_flag("--sphere", "of all of it")->needs(environment)->excludes(hemisphere);
+  app.add_option("--spin", options.spin_deg, "turns the environment about +Y by so many degrees more every frame")
+      ->check(CLI::Range(-360.0, 360.0))
+      ->needs(environment);
   app.add_option("--shadow-maps", options.shadow_maps,
                  "most lights to render, each with its map (default: all; live 72)")
       ->check(CLI::Range(1, 100000));
@@ -88,8 +106,13 @@ Parsed parse_options(int argc, const char* const* argv) {
     if (error.get_exit_code() == 0) return {std::nullopt, app.exit(error)};
     return {std::nullopt, complain(error.what())};
   }
-  if (options.live == !options.light_set.empty())
-    return {std::nullopt, complain("one of --live and --light-set says where the light comes from")};
+  if (!options.live && options.light_set.empty() && options.environment.empty())
+    return {std::nullopt,
+            complain("one of --live, --environment and --light-set must say where the light comes from")};
+  const auto chosen = method_from_name(method);
+  if (!chosen) return {std::nullopt, complain("--method " + method + ": must be one of " + method_names())};
+  options.method = *chosen;
+  options.coverage = sphere->count() > 0 ? Coverage::sphere : Coverage::hemisphere;
   const auto parsed_size = parse_size(size);
   if (!parsed_size) return {std::nullopt, complain(parsed_size.error().message)};
   std::tie(options.width, options.height) = *parsed_size;
@@ -99,7 +122,7 @@ Parsed parse_options(int argc, const char* const* argv) {
     options.outputs.push_back(*name);
   }
   options.background_environment = background == "environment";
-  if (options.background_environment && !options.live)
+  if (options.background_environment && !options.light_set.empty())
     return {std::nullopt,
             complain("--background environment: a light set has no picture of its environment")};
   options.tone_map = tone_map == "none" ? ToneMap::none : ToneMap::reinhard;

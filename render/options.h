@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "lighting/decompose.h"
+#include "lighting/light_set.h"
 #include "render/frame_name.h"
 #include "render/tone_mapper.h"
 
@@ -19,6 +21,11 @@ struct Options {
   int domain = 0;
   std::string interface = "lo";
   std::filesystem::path light_set;
+  std::filesystem::path environment;
+  int lights = 72;
+  Method method = Method::best;
+  Coverage coverage = Coverage::hemisphere;
+  double spin_deg = 0;  // of the environment, a frame
   int shadow_maps = 0;  // 0: all lights, live 72
   int shadow_size = 256;
   int width = 640;

@@ -61,6 +61,9 @@ Result<std::unique_ptr<LightSource>> open_lights(const Options& options) {
     live.with_environment = options.background_environment;
     return live_lights(live);
   }
+  if (!options.environment.empty())
+    return environment_lights({options.environment, options.lights, options.method, options.coverage,
+                               options.spin_deg, options.shadow_maps});
   auto set = read_light_set(options.light_set);
   if (!set) return set.error();
   return fixed_lights(*set, options.shadow_maps);
@@ -114,7 +117,7 @@ class Session {
       const auto fresh = source_.update(frame_, std::chrono::milliseconds(20));
       if (!fresh) return fresh.error();
       // Live frames are as many as lights arrive: the same light twice would be the same picture.
-      if (!source_.ready() || (source_.changes() && !*fresh)) continue;
+      if (!source_.ready() || (options_.live && !*fresh)) continue;
       if (Status s = render(camera_); !s) return s;
     }
     if (frame_ == 0 && !stop_)
@@ -166,12 +169,15 @@ class Session {
   }
 
   Status render(const SceneCamera& camera) {
-    if (options_.background_environment) renderer_->set_environment(source_.environment());
+    if (options_.background_environment && source_.environment_version() != shown_environment_) {
+      renderer_->set_environment(source_.environment());
+      shown_environment_ = source_.environment_version();
+    }
     Statistics::Frame times;
     const auto start = Clock::now();
     const double cpu_start = cpu_ms();
     // Frames of a sequence are 1/25 s apart, live ones as far as they are.
-    const double dt_s = source_.changes() && options_.live ? seconds_since(last_frame_) : 0.04;
+    const double dt_s = options_.live ? seconds_since(last_frame_) : 0.04;
     last_frame_ = start;
     if (Status s = renderer_->render(source_.lights(), camera, source_.environment_turn_rad()); !s) return s;
     renderer_->tone_map(options_.tone_map, dt_s);
@@ -226,6 +232,7 @@ class Session {
   std::optional<Renderer> renderer_;
   Statistics statistics_;
   int frame_ = 0;
+  int shown_environment_ = 0;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_frame_ = Clock::now();
 };
