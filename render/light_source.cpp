@@ -25,11 +25,11 @@ class EnvironmentLights final : public LightSource {
   Result<bool> update(int frame, std::chrono::milliseconds /*wait*/) override {
     const double turn_rad = std::remainder(frame * options_.spin_deg, 360.0) * kPi / 180;
     if (made_ && turn_rad == turn_rad_) return false;
-    const PolarMap map =
-        polar_map_from_lat_long(image_, options_.coverage == Coverage::hemisphere, turn_rad);
+    const PolarMap map = polar_map_from_lat_long(image_, options_.coverage == Coverage::hemisphere, turn_rad);
     const auto set = decompose(map, options_.method, options_.lights);
     if (!set) return Error{set.error().kind, options_.file.string() + ": " + set.error().message};
-    lights_ = options_.max_lights > 0 ? take_lights(*set, static_cast<std::size_t>(options_.max_lights)) : *set;
+    lights_ =
+        options_.max_lights > 0 ? take_lights(*set, static_cast<std::size_t>(options_.max_lights)) : *set;
     turn_rad_ = turn_rad;
     made_ = true;
     return true;

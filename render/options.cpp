@@ -69,10 +69,13 @@ Parsed parse_options(int argc, const char* const* argv) {
   app.add_option("--method", method, "how to make them: " + method_names())
       ->capture_default_str()
       ->needs(environment);
-  auto* hemisphere =
-      app.add_flag("--hemisphere", "of its upper half, what the probe sees (default)")->needs(environment);
-  auto* sphere = app.add_flag("--sphere", "of all of it")->needs(environment)->excludes(hemisphere);
-  app.add_option("--spin", options.spin_deg, "turns the environment about +Y by so many degrees more every frame")
+  bool hemisphere = false;
+  bool sphere = false;
+  app.add_flag("--hemisphere", hemisphere, "of its upper half, what the probe sees (default)")
+      ->needs(environment);
+  app.add_flag("--sphere", sphere, "of all of it")->needs(environment)->excludes("--hemisphere");
+  app.add_option("--spin", options.spin_deg,
+                 "turns the environment about +Y by so many degrees more every frame")
       ->check(CLI::Range(-360.0, 360.0))
       ->needs(environment);
   app.add_option("--shadow-maps", options.shadow_maps,
@@ -112,7 +115,7 @@ Parsed parse_options(int argc, const char* const* argv) {
   const auto chosen = method_from_name(method);
   if (!chosen) return {std::nullopt, complain("--method " + method + ": must be one of " + method_names())};
   options.method = *chosen;
-  options.coverage = sphere->count() > 0 ? Coverage::sphere : Coverage::hemisphere;
+  options.coverage = sphere ? Coverage::sphere : Coverage::hemisphere;
   const auto parsed_size = parse_size(size);
   if (!parsed_size) return {std::nullopt, complain(parsed_size.error().message)};
   std::tie(options.width, options.height) = *parsed_size;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "interface/environment_io.h"
 #include "interface/light_set_io.h"
 #include "render/egl_context.h"
 #include "tests/integration/render/program.h"
@@ -69,6 +70,42 @@ TEST_F(Command, WritesFramesNumberedFromZeroAndTheStatisticsOfTheContract) {
   for (const char* pass : {"shadow", "gbuffer", "shading", "tonemap"}) EXPECT_GT(stats["passes"][pass], 0);
 }
 
+// An environment of uniform radiance 1: the open ground receives π from the hemisphere.
+TEST_F(Command, AUniformEnvironmentReturnsAlbedoAndTheLowerHalfAddsNothingToTheGround) {
+  ASSERT_TRUE(
+      write_environment(file("sky.exr"), LatLongImage{64, 32, std::vector<Rgb>(64 * 32, Rgb::Ones())}));
+  for (const char* part : {"--hemisphere", "--sphere"}) {
+    Program program(folder_.path(),
+                    {"--scene", LIGHTWELL_STAGE, "--environment", file("sky.exr"), part, "--lights", "64",
+                     "--headless", "--size", "32x24", "--shadow-size", "64", "--out", file("sky_out.exr")});
+    ASSERT_EQ(program.wait(), 0) << program.errors();
+    const auto picture = read_environment(file("sky_out.exr"));
+    ASSERT_TRUE(picture.ok());
+    // 64 lights of a uniform sky err by less than this on a normal; the objects hide a little of it.
+    EXPECT_NEAR(picture->image.at(16, 23)[0], 0.42f, 0.42f * 0.1f) << part;
+  }
+}
+
+TEST_F(Command, ASpinningEnvironmentTurnsTheShadows) {
+  LatLongImage lamp{64, 32, std::vector<Rgb>(64 * 32, Rgb::Zero())};
+  lamp.at(10, 12) = Rgb::Constant(1000);
+  ASSERT_TRUE(write_environment(file("lamp.exr"), lamp));
+  Program program(folder_.path(),
+                  {"--scene", LIGHTWELL_STAGE, "--environment", file("lamp.exr"), "--lights", "1", "--spin",
+                   "180", "--frames", "3", "--headless", "--size", "32x24", "--out", file("l_%d.exr")});
+  ASSERT_EQ(program.wait(), 0) << program.errors();
+  const auto first = read_environment(file("l_0.exr"));
+  const auto half = read_environment(file("l_1.exr"));
+  const auto whole = read_environment(file("l_2.exr"));
+  ASSERT_TRUE(first.ok() && half.ok() && whole.ok());
+  float turned = 0;
+  for (std::size_t i = 0; i < first->image.pixels.size(); ++i) {
+    EXPECT_NEAR(whole->image.pixels[i][0], first->image.pixels[i][0], 1e-4f);
+    turned = std::max(turned, std::abs(half->image.pixels[i][0] - first->image.pixels[i][0]));
+  }
+  EXPECT_GT(turned, 0.1f);
+}
+
 TEST_F(Command, FewerShadowMapsThanLightsFoldTheLights) {
   Program program(folder_.path(), arguments({"--shadow-maps", "1", "--stats", file("stats.json")}));
   ASSERT_EQ(program.wait(), 0) << program.errors();
@@ -81,12 +118,17 @@ TEST_F(Command, BadInputNamesTheFileAndEndsWith3) {
   expect_refused({"--scene", file("none.gltf"), "--light-set", lights_, "--headless"}, 3, "none.gltf");
   expect_refused({"--scene", file("broken.gltf"), "--light-set", lights_, "--headless"}, 3, "broken.gltf");
   expect_refused({"--scene", folder_.path().string(), "--light-set", lights_, "--headless"}, 3, "directory");
+  expect_refused({"--scene", LIGHTWELL_STAGE, "--environment", file("none.exr"), "--headless"}, 3,
+                 "none.exr");
   expect_refused({"--scene", LIGHTWELL_STAGE, "--light-set", file("broken.json"), "--headless"}, 3,
                  "broken.json");
 }
 
 TEST_F(Command, WrongUsageNamesTheOptionAndEndsWith2) {
-  expect_refused({"--scene", LIGHTWELL_STAGE, "--headless"}, 2, "--light-set");
+  expect_refused({"--scene", LIGHTWELL_STAGE, "--headless"}, 2, "--environment");
+  expect_refused(arguments({"--lights", "8"}), 2, "--environment");
+  expect_refused({"--scene", LIGHTWELL_STAGE, "--environment", "x.exr", "--method", "guess"}, 2,
+                 "median-cut");
   expect_refused({"--light-set", lights_, "--headless"}, 2, "--scene");
   expect_refused({"--scene", LIGHTWELL_STAGE, "--light-set", lights_, "--live"}, 2, "--live");
   expect_refused(arguments({"--no-such-option"}), 2, "--no-such-option");
