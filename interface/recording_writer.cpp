@@ -26,12 +26,11 @@ namespace {
 // them.
 constexpr int kMinFfv1Side = 3;
 constexpr int kMaxSide = 16384;  // what players and coders accept with room to spare
-// A cut loses what is not yet written: a cluster ends after this time, or at this size, so that memory stays
-// small.
+// A cut loses what is not yet written: everything is written after this time, or at this size, so that memory
+// stays small.
 constexpr std::chrono::milliseconds kClusterTime{400};
 constexpr std::size_t kClusterBytes = 4 << 20;
-// The muxer must not end clusters by itself: a cluster's end is where the file is cut back to after a
-// failure.
+// The muxer gives every frame beyond 4 kB a cluster of its own; it needs no other limits.
 constexpr std::int64_t kNeverMs = std::numeric_limits<std::int16_t>::max() - 1000;
 
 class MatroskaWriter final : public RecordingWriter {
