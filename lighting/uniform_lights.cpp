@@ -77,7 +77,7 @@ std::vector<DirectionalLight> uniform_lights(const PolarMap& map, int count, std
     }
   std::vector<std::uint32_t> order(static_cast<std::size_t>(count));
   std::iota(order.begin(), order.end(), 0u);
-  const int shift = 32 - std::bit_width(static_cast<unsigned>(count) - 1u);
+  const int shift = 32 - static_cast<int>(std::bit_width(static_cast<unsigned>(count) - 1u));
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return shift >= 32 ? a < b : reversed_bits(a) >> shift < reversed_bits(b) >> shift;
   });
