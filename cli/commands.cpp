@@ -16,6 +16,7 @@ Error usage(std::string message) {
 }
 
 // One a file, in the order in which --help lists them.
+Command add_bench(CLI::App& app);
 Command add_devices(CLI::App& app);
 Command add_doctor(CLI::App& app);
 Command add_evaluate(CLI::App& app);
@@ -31,6 +32,7 @@ std::vector<Command> add_commands(CLI::App& app) {
   return {
       add_lights(app),
       add_evaluate(app),
+      add_bench(app),
       add_devices(app),
       add_doctor(app),
       add_filter(app),

@@ -31,7 +31,7 @@ struct RadiometerOptions {
 // agree with double within 5e-4 of their radiance before the toe is subtracted. A Bayer quad is one sample: red and
 // blue stand for its whole solid angle, the greens for half each; a light smaller than a quad is measured in the
 // colours it falls on, which is right on average over its positions and all that the sensor knows.
-// source: Havran et al. 2005, section 5.1; docs/decisions/010-frame-kernel.md
+// source: Havran et al. 2005, section 5.1; docs/decisions/012-frame-kernel.md
 class Radiometer {
  public:
   // Fails with bad_input where calibration and format disagree, naming the field. response.bits is the format's; in 16

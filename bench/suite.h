@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+// Speed against error, with peers in the same run. A suite is one function that returns rows;
+// bench/suites.cpp lists them. Numbers are for people and for bench/results/; no test asserts them.
+namespace lightwell::bench {
+
+struct Options {
+  double seconds_per_case = 1;  // time spent on each case, at least kLeastRuns runs
+};
+inline constexpr std::size_t kLeastRuns = 20;
+
+struct Timing {
+  double p10_ms = 0;  // NaN where a suite does not keep it
+  double p50_ms = 0;
+  double p99_ms = 0;
+  std::size_t runs = 0;
+};
+
+// One measured thing. Values stand beside the time, named with their unit: {"max_relative_error", 4e-4}.
+struct Row {
+  std::string setting;  // what cases are compared in: "2048x2048"
+  std::string name;     // "Lightwell avx2"
+  Timing timing;
+  std::vector<std::pair<std::string, double>> values;
+};
+
+// Something to time: called with 0, 1, 2 … so that it can take another input each time.
+struct Case {
+  std::string name;
+  std::function<void(std::size_t)> run;
+  std::vector<std::pair<std::string, double>> values;
+};
+
+// Times cases in turns, so that what else the machine does falls on all of them alike. With a baseline (the
+// first case's name), every row gets `ratio_of_p50_to_<baseline>`.
+std::vector<Row> time_in_turns(const std::string& setting, std::vector<Case> cases, const Options& options,
+                               const std::string& baseline = "");
+
+struct Suite {
+  std::string name;
+  std::vector<Row> (*run)(const Options&);
+};
+const std::vector<Suite>& suites();
+
+std::vector<Row> frame_suite(const Options& options);
+
+// CPU, compiler, flags, commit, date and all rows: schema "lightwell.bench/1".
+std::string to_json(const std::vector<std::pair<std::string, std::vector<Row>>>& results);
+// Bars of the medians, one group a setting, with the first value of each row beside it.
+std::string to_svg(const std::string& suite, const std::vector<Row>& rows);
+// A table for the terminal.
+std::string to_text(const std::string& suite, const std::vector<Row>& rows);
+
+}  // namespace lightwell::bench

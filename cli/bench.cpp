@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "bench/suite.h"
+#include "cli/command.h"
+#include "interface/atomic_file.h"
+
+namespace lightwell::cli {
+namespace {
+
+struct Asked {
+  std::string suite = "all";
+  std::string json_file;
+  std::string svg_folder;
+  bench::Options options;
+};
+
+int run(const Asked& asked) {
+  // Before minutes of work, not after.
+  for (const std::filesystem::path& folder :
+       {std::filesystem::path(asked.svg_folder), std::filesystem::path(asked.json_file).parent_path()})
+    if (!folder.empty() && !std::filesystem::is_directory(folder))
+      return fail({ErrorKind::failed, folder.string() + ": no such folder"});
+  std::vector<std::pair<std::string, std::vector<bench::Row>>> results;
+  for (const bench::Suite& suite : bench::suites()) {
+    if (asked.suite != "all" && asked.suite != suite.name) continue;
+    std::fprintf(stderr, "running suite %s\n", suite.name.c_str());
+    results.emplace_back(suite.name, suite.run(asked.options));
+    std::printf("%s", bench::to_text(suite.name, results.back().second).c_str());
+    std::fflush(stdout);
+  }
+  if (!asked.json_file.empty())
+    if (const Status status = write_file_atomically(asked.json_file, bench::to_json(results)); !status)
+      return fail(status.error());
+  if (!asked.svg_folder.empty())
+    for (const auto& [name, rows] : results) {
+      const auto file = std::filesystem::path(asked.svg_folder) / (name + ".svg");
+      if (const Status status = write_file_atomically(file, bench::to_svg(name, rows)); !status)
+        return fail(status.error());
+    }
+  return 0;
+}
+
+}  // namespace
+
+Command add_bench(CLI::App& app) {
+  const auto asked = std::make_shared<Asked>();
+  CLI::App* command = app.add_subcommand("bench", "Measures speed against error, with peers in the same run");
+  std::vector<std::string> names = {"all"};
+  for (const bench::Suite& suite : bench::suites()) names.push_back(suite.name);
+  command->add_option("--suite", asked->suite, "Which suite")
+      ->check(CLI::IsMember(names))
+      ->capture_default_str();
+  command->add_option("--json", asked->json_file, "Write all numbers, CPU, compiler, flags and commit here");
+  command->add_option("--svg", asked->svg_folder, "Write a plot of each suite into this folder");
+  command->add_option("--seconds", asked->options.seconds_per_case, "Time for each case")
+      ->check(CLI::Range(0.0, 600.0))
+      ->capture_default_str();
+  command->footer("Example: lightwell bench --suite frame --json out.json --svg .");
+  return {command, [asked] { return run(*asked); }};
+}
+
+}  // namespace lightwell::cli
