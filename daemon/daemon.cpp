@@ -48,7 +48,7 @@ struct Daemon::Parts {
         snapshots(FramePath::prototype(frame_path_options(given))),
         calibration(std::move(calibration_given)),
         recorder(given.record.directory),
-        pipeline(snapshots, &recorder) {}
+        pipeline(&recorder) {}
 
   std::int64_t start_mono_ns = mono_now_ns();
   mutable std::mutex mutex;  // guards configuration and calibration

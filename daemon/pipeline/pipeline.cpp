@@ -21,7 +21,7 @@ void ask_for_real_time() noexcept {
 
 }  // namespace
 
-Pipeline::Pipeline(SnapshotChannel& snapshots, FrameSink* sink) : snapshots_(snapshots), sink_(sink) {}
+Pipeline::Pipeline(FrameSink* sink) : sink_(sink) {}
 
 Pipeline::~Pipeline() {
   stop();

@@ -12,7 +12,6 @@
 
 #include "daemon/capture/capture_source.h"
 #include "daemon/pipeline/frame_path.h"
-#include "daemon/pipeline/snapshot.h"
 
 namespace lightwell {
 
@@ -27,8 +26,8 @@ class FrameSink {
 // Everything else in the daemon reads what it publishes; nothing else can make it wait.
 class Pipeline {
  public:
-  // snapshots and sink (may be null) outlive the pipeline.
-  Pipeline(SnapshotChannel& snapshots, FrameSink* sink);
+  // sink may be null, and outlives the pipeline.
+  explicit Pipeline(FrameSink* sink);
   ~Pipeline();
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
@@ -59,7 +58,6 @@ class Pipeline {
   void handle(const FrameLease& frame);
   void measure_rate(std::int64_t now_ns) noexcept;
 
-  SnapshotChannel& snapshots_;
   FrameSink* sink_;
   std::thread thread_;
   std::atomic<bool> stopping_{false};

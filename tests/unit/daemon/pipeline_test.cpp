@@ -111,7 +111,7 @@ class PipelineTest : public testing::Test {
   SnapshotChannel snapshots_{FramePath::prototype(small_options())};
   CountingSink sink_;
   std::shared_ptr<HandFedSource> source_ = std::make_shared<HandFedSource>();
-  Pipeline pipeline_{snapshots_, &sink_};
+  Pipeline pipeline_{&sink_};
 };
 
 TEST_F(PipelineTest, AUniformSceneBecomesLightsOfItsWholeIlluminance) {
