@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <system_error>
 #include <utility>
 
 namespace lightwell {
@@ -40,14 +41,28 @@ AtomicFileWriter::AtomicFileWriter(AtomicFileWriter&& other) noexcept
 AtomicFileWriter::~AtomicFileWriter() {
   if (fd_ < 0) return;
   ::close(fd_);
-  ::unlink(temporary_.c_str());
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
 Result<AtomicFileWriter> AtomicFileWriter::create(const std::filesystem::path& file) {
-  std::string temporary = file.string() + ".XXXXXX";
+  struct stat info {};
+  const bool exists = ::stat(file.c_str(), &info) == 0;
+  if (exists && S_ISDIR(info.st_mode)) {
+    errno = EISDIR;
+    return failure(file, "cannot write");
+  }
+  if (exists && !S_ISREG(info.st_mode)) {  // a device or pipe stays what it is: a rename would replace it
+    const int fd = ::open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+    if (fd < 0) return failure(file, "cannot write");
+    return AtomicFileWriter(file, {}, fd);
+  }
+  std::error_code ignored;  // behind a link the file is replaced, not the link
+  std::filesystem::path target = exists ? std::filesystem::canonical(file, ignored) : file;
+  if (target.empty()) target = file;
+  std::string temporary = target.string() + ".XXXXXX";
   const int fd = ::mkostemp(temporary.data(), O_CLOEXEC);
   if (fd < 0) return failure(file, "cannot write");
-  return AtomicFileWriter(file, std::move(temporary), fd);
+  return AtomicFileWriter(std::move(target), std::move(temporary), fd);
 }
 
 Status AtomicFileWriter::append(std::string_view content) {
@@ -56,6 +71,10 @@ Status AtomicFileWriter::append(std::string_view content) {
 }
 
 Status AtomicFileWriter::commit() {
+  if (temporary_.empty()) {  // a device or pipe has it already
+    if (::close(std::exchange(fd_, -1)) != 0) return failure(file_, "cannot write");
+    return {};
+  }
   if (::fchmod(fd_, 0644) != 0 || ::fsync(fd_) != 0) return failure(file_, "cannot write");
   if (::rename(temporary_.c_str(), file_.c_str()) != 0) return failure(file_, "cannot write");
   ::close(std::exchange(fd_, -1));  // what was synced is safe whatever close says

@@ -13,7 +13,7 @@
 namespace lightwell {
 
 // Writes a file whole or not at all: temporary file beside it, fsync, rename. Kind failed with the reason and
-// path.
+// path. A link is followed; into a device or pipe (/dev/stdout) it is written straight, nothing is renamed.
 Status write_file_atomically(const std::filesystem::path& file, std::string_view content);
 
 // The same for a file that grows piece by piece (a light set a line): nothing stands under its name before
@@ -31,8 +31,8 @@ class AtomicFileWriter {
  private:
   AtomicFileWriter(std::filesystem::path file, std::string temporary, int fd);
   std::filesystem::path file_;
-  std::string temporary_;
-  int fd_;  // -1: closed, or moved from
+  std::string temporary_;  // empty: a device or pipe
+  int fd_;                 // -1: closed, or moved from
 };
 
 // Whole file as text; bad_input for missing, directory, unreadable, larger than limit_bytes.
