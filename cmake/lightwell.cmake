@@ -26,6 +26,8 @@ endif()
 add_library(lightwell_flags INTERFACE)
 target_compile_options(lightwell_flags INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror)
 target_include_directories(lightwell_flags INTERFACE "${CMAKE_SOURCE_DIR}" "${CMAKE_BINARY_DIR}/generated")
+# Libraries that pkg-config names but nothing calls would still cost the daemon memory.
+target_link_options(lightwell_flags INTERFACE -Wl,--as-needed)
 if(LIGHTWELL_SANITIZE)
   target_compile_options(lightwell_flags INTERFACE -fsanitize=${LIGHTWELL_SANITIZE} -fno-omit-frame-pointer
                          -fno-sanitize-recover=all)

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "lighting/lat_long_image.h"
+#include "lighting/result.h"
+
+namespace lightwell {
+
+bool is_exr(std::string_view bytes);
+
+// The first part of an EXR file as colours, its display window; dark where the data window does not reach.
+// Scan lines or tiles (of a mip map the full resolution), any compression; half, float, or integers as their
+// value. Channels: see interface/environment_io.h. bad_input: truncated or damaged, deep, subsampled, no
+// colours, an envmap attribute that says cube, more than pixel_limit pixels. Memory grows with what the file
+// holds, not with what its header claims. fails by std::bad_alloc where memory is short
+Result<LatLongImage> read_exr(std::string_view bytes, const std::string& name_for_errors,
+                              std::int64_t pixel_limit);
+
+// What an image is of: written as the envmap attribute.
+enum class ExrContent { picture, lat_long_environment };
+
+// The bytes of an EXR file: 32 bit float, ZIP, linear Rec. 709. Row 0 at the top.
+// channels: one letter each, in the order of the samples, e.g. "RGBA"; pixels: [height][width][channel]
+// failed: not enough memory, or a size EXR does not have
+Result<std::string> exr_from_floats(int width, int height, std::string_view channels,
+                                    std::span<const float> pixels, ExrContent content);
+
+}  // namespace lightwell
