@@ -12,7 +12,7 @@
 namespace lightwell {
 
 // Radiance HDR pictures (RGBE: three 8 bit mantissas over one exponent), flat or run-length encoded, old and
-// new. Our own reader because it meets files from anywhere and OpenImageIO's cannot read from memory: every
+// new. Our own reader because it meets files from anywhere and must read them from memory: every
 // byte is checked. source: Ward, "Real Pixels", Graphics Gems II, 1991; Radiance file formats, section
 // "Picture File Format"
 bool is_radiance_hdr(std::string_view bytes);
