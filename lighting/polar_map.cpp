@@ -26,9 +26,10 @@ Rgbd total_illuminance(const PolarMap& map) {
   Rgbd total = Rgbd::Zero();
   for (int c = 0; c < map.channels; ++c) {
     const auto plane = map.plane(c);
-    double sum = 0;
-    for (std::size_t i = 0; i < plane.size(); ++i)
-      sum += static_cast<double>(plane[i]) * static_cast<double>(map.solid_angle_sr[i]);
+    const auto size = static_cast<Eigen::Index>(plane.size());
+    const double sum = (Eigen::Map<const Eigen::ArrayXf>(plane.data(), size).cast<double>() *
+                        Eigen::Map<const Eigen::ArrayXf>(map.solid_angle_sr.data(), size).cast<double>())
+                           .sum();
     if (map.channels == 1) return Rgbd::Constant(sum);
     total[c] = sum;
   }

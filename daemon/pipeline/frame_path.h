@@ -21,7 +21,7 @@ struct FramePathOptions {
   RadiometerOptions radiometer;
   // rate_hz is the camera's and set by the frame path; pass_hz = stop_hz = 0 asks for the paper's 7/21 and
   // 9/21 of it.
-  LightPipelineOptions lights;
+  LightPipelineOptions lights{.pass_hz = 0, .stop_hz = 0};
 };
 
 // A raw frame on its way to published lights, in four steps that read top to bottom in process():
