@@ -324,8 +324,9 @@ Result<Calibration> read_calibration(const std::filesystem::path& directory) {
   calibration.rec709_from_camera = sensor->rec709_from_camera;
   calibration.lens = *lens;
   const auto flat_file = directory / "flat.json";
+  // Only what is not there may be absent: a file that cannot be read, or a link to nowhere, is an error.
   std::error_code ignored;
-  if (std::filesystem::exists(flat_file, ignored)) {
+  if (std::filesystem::symlink_status(flat_file, ignored).type() != std::filesystem::file_type::not_found) {
     auto flat = read_flat_field(flat_file);
     if (!flat) return flat.error();
     calibration.flat = *std::move(flat);
