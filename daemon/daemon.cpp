@@ -10,7 +10,7 @@
 
 #include "daemon/alarm.h"
 #include "daemon/assembly.h"
-#include "daemon/pipeline/clock.h"
+#include "daemon/clock.h"
 #include "daemon/pipeline/pipeline.h"
 #include "daemon/pipeline/snapshot.h"
 #include "daemon/publish/publisher.h"
@@ -141,12 +141,14 @@ DaemonStatus Daemon::status() const {
   const Pipeline::View view = parts_->pipeline.view();
   const std::int64_t now_ns = mono_now_ns();
   DaemonStatus status;
+  std::filesystem::path record_directory;
   status.version = "0.1.0";
   status.uptime_s = static_cast<double>(now_ns - parts_->start_mono_ns) * 1e-9;
   {
     const std::scoped_lock lock(parts_->mutex);
     status.source = parts_->configuration.source.address;
     status.calibration_id = parts_->calibration.id;
+    record_directory = parts_->configuration.record.directory;
   }
   if (view.source) {  // between construction and start there is none
     status.source_state = view.source->state();
@@ -156,7 +158,7 @@ DaemonStatus Daemon::status() const {
   }
   status.measured_rate_hz = view.measured_rate_hz;
   status.calibration_verdict = view.mismatch;
-  status.dropped_by_pipeline = status.capture.skipped;
+  status.dropped_by_pipeline = view.dropped;
   if (view.path) {
     status.published = view.path->published();
     const auto develop = view.path->develop_ms().quantiles();
@@ -171,8 +173,7 @@ DaemonStatus Daemon::status() const {
   const Recorder::Stats take = parts_->recorder.stats();
   status.recording = {take.active, take.file, take.frames, take.dropped, take.bytes, take.error};
   std::error_code ignored;
-  status.recording.directory =
-      std::filesystem::absolute(parts_->configuration.record.directory, ignored).string();
+  status.recording.directory = std::filesystem::absolute(record_directory, ignored).string();
   status.alarm = alarm_for(status);
   return status;
 }

@@ -37,7 +37,8 @@ class FramePath {
   // changes. Fails (bad_input) where the calibration is not for such frames; the message says what differs.
   Status prepare(const FrameFormat& format, double rate_hz);
 
-  // After a good prepare for the frame's format. Allocates nothing once every snapshot has the current shape.
+  // After a good prepare for the frame's format; info.exposure_us > 0. Allocates nothing once every snapshot
+  // has the current shape.
   void process(const FrameInfo& info, std::span<const std::byte> codes) noexcept;
 
   [[nodiscard]] std::uint64_t published() const noexcept {

@@ -5,7 +5,9 @@
 #include <pthread.h>
 #include <sched.h>
 
-#include "daemon/pipeline/clock.h"
+#include <cmath>
+
+#include "daemon/clock.h"
 
 namespace lightwell {
 namespace {
@@ -17,6 +19,14 @@ void ask_for_real_time() noexcept {
   parameter.sched_priority = 10;
   pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
   pthread_setname_np(pthread_self(), "frame-path");
+}
+
+// Radiance is what was seen in how long: without an exposure there is none.
+Status check_exposure(const FrameInfo& info) {
+  if (info.exposure_us > 0 && std::isfinite(info.exposure_us)) return {};
+  return Error{ErrorKind::bad_input, "frame exposure_us = " + std::to_string(info.exposure_us) +
+                                         ": allowed a finite number above 0; the source does not say how "
+                                         "long it exposes"};
 }
 
 }  // namespace
@@ -31,8 +41,11 @@ Status Pipeline::start(std::shared_ptr<CaptureSource> source, std::shared_ptr<Fr
   verify_bug(!thread_.joinable(), "pipeline started twice");
   const Status started = source->start();
   if (!started) return started;
-  source_ = std::move(source);
-  path_ = std::move(path);
+  {
+    const std::scoped_lock lock(mutex_);  // whoever asks for a view may do so already
+    source_ = std::move(source);
+    path_ = std::move(path);
+  }
   stopping_ = false;
   thread_ = std::thread([this] { run(); });
   return {};
@@ -44,7 +57,9 @@ Status Pipeline::replace(std::shared_ptr<CaptureSource> source, std::shared_ptr<
     if (!started) return started;
   }
   const std::scoped_lock lock(mutex_);
-  next_source_ = std::move(source);
+  // A replacement that still waits gives way, but for its source where this one keeps the source. A source
+  // that gives way ends when `source` does, after the lock.
+  if (source) next_source_.swap(source);
   next_path_ = std::move(path);
   replacement_waits_ = true;
   return {};
@@ -57,7 +72,8 @@ void Pipeline::stop() noexcept {
 
 Pipeline::View Pipeline::view() const {
   const std::scoped_lock lock(mutex_);
-  return {source_, path_, mismatch_, measured_rate_hz_.load(std::memory_order_relaxed)};
+  return {source_, path_, mismatch_, measured_rate_hz_.load(std::memory_order_relaxed),
+          dropped_.load(std::memory_order_relaxed)};
 }
 
 void Pipeline::run() noexcept {
@@ -92,13 +108,17 @@ void Pipeline::take_replacement() {
 }
 
 void Pipeline::handle(const FrameLease& frame) {
-  const Status ready = path_->prepare(frame.info().format, source_->rate_hz());
+  Status ready = check_exposure(frame.info());
+  if (ready) ready = path_->prepare(frame.info().format, source_->rate_hz());
   if (!ready || mismatched_) {  // rare: state changes only
     const std::scoped_lock lock(mutex_);
     mismatch_ = ready ? "" : ready.error().message;
     mismatched_ = !ready.ok();
   }
-  if (!ready) return;
+  if (!ready) {
+    dropped_.fetch_add(1, std::memory_order_relaxed);
+    return;
+  }
   path_->process(frame.info(), frame.bytes());
   if (sink_ != nullptr) sink_->offer(frame.info(), frame.bytes());
 }

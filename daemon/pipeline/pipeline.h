@@ -34,7 +34,8 @@ class Pipeline {
 
   // Fails where the source cannot even begin (missing file); afterwards frames flow until stop.
   Status start(std::shared_ptr<CaptureSource> source, std::shared_ptr<FramePath> path);
-  // Takes effect between two frames, without losing one. source null: keep the one that runs.
+  // Takes effect between two frames; the last call before that counts. source null: keep the one that runs
+  // (or that an earlier call has begun), without losing a frame.
   // A new source that cannot begin is refused here and the old one goes on.
   Status replace(std::shared_ptr<CaptureSource> source, std::shared_ptr<FramePath> path);
   // Stops the thread and the source; up to 5 s where a camera died.
@@ -45,6 +46,7 @@ class Pipeline {
     std::shared_ptr<FramePath> path;
     std::string mismatch;  // why frames arrive but are not developed; empty: all well
     double measured_rate_hz = 0;
+    std::uint64_t dropped = 0;  // frames that came and were not developed, since start
   };
   [[nodiscard]] View view() const;
   // Advances with every turn of the loop, frames or not: a stuck frame path stops it (watchdog).
@@ -63,6 +65,7 @@ class Pipeline {
   std::atomic<bool> stopping_{false};
   std::atomic<std::uint64_t> heartbeat_{0};
   std::atomic<double> measured_rate_hz_{0};
+  std::atomic<std::uint64_t> dropped_{0};
 
   mutable std::mutex mutex_;  // guards the four below; the frame path holds it for pointer copies only
   std::shared_ptr<CaptureSource> source_, next_source_;

@@ -5,14 +5,16 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstring>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
 
-#include "daemon/pipeline/clock.h"
+#include "daemon/clock.h"
 #include "tests/support/eventually.h"
 
 namespace lightwell {
@@ -45,7 +47,18 @@ FramePathOptions small_options() {
 class HandFedSource final : public CaptureSource {
  public:
   Status start() override { return {}; }
+  // Between the two, wait does not return.
+  void hold() {
+    held_ = true;
+    while (!waiting_) std::this_thread::yield();
+  }
+  void go_on() { held_ = false; }
   FrameLease wait(milliseconds timeout) noexcept override {
+    while (held_) {
+      waiting_ = true;
+      std::this_thread::yield();
+    }
+    waiting_ = false;
     const std::int64_t end_ns = mono_now_ns() + timeout.count() * 1'000'000;
     do {
       const std::scoped_lock lock(mutex_);
@@ -70,13 +83,13 @@ class HandFedSource final : public CaptureSource {
     std::vector<std::byte> codes;
     std::atomic<bool> free{false};
   };
-  Frame* give(const FrameFormat& format, std::uint16_t code) {
+  Frame* give(const FrameFormat& format, std::uint16_t code, double exposure_us = 10000) {
     auto frame = std::make_unique<Frame>();
     frame->codes.resize(format.bytes());
     for (std::size_t i = 0; i + 1 < frame->codes.size(); i += 2) std::memcpy(&frame->codes[i], &code, 2);
     frame->info.format = format;
     frame->info.sequence = ++sequence_;
-    frame->info.exposure_us = 10000;
+    frame->info.exposure_us = exposure_us;
     frame->info.capture_mono_ns = frame->info.received_mono_ns = mono_now_ns();
     const std::scoped_lock lock(mutex_);
     owned_.push_back(std::move(frame));
@@ -86,6 +99,7 @@ class HandFedSource final : public CaptureSource {
   std::atomic<bool> stopped{false};
 
  private:
+  std::atomic<bool> held_{false}, waiting_{false};
   std::mutex mutex_;
   std::deque<Frame*> frames_;
   std::vector<std::unique_ptr<Frame>> owned_;
@@ -146,6 +160,7 @@ TEST_F(PipelineTest, FramesOfAnotherSizeAreSaidAndSurvived) {
   source_->give({32, 32, PixelFormat::mono12}, 1500);
   EXPECT_TRUE(eventually([&] { return !pipeline_.view().mismatch.empty(); }));
   EXPECT_NE(pipeline_.view().mismatch.find("32"), std::string::npos) << pipeline_.view().mismatch;
+  EXPECT_TRUE(eventually([&] { return pipeline_.view().dropped == 1; }));
   source_->give(kFormat, 1500);
   ASSERT_TRUE(published(0));
   EXPECT_TRUE(eventually([&] { return pipeline_.view().mismatch.empty(); }));
@@ -162,6 +177,34 @@ TEST_F(PipelineTest, ReplacementGoesOnCountingAndStopsTheOldSource) {
   ASSERT_TRUE(snapshot);
   EXPECT_EQ(snapshot->number, 2u);
   EXPECT_TRUE(source_->stopped);
+}
+
+TEST_F(PipelineTest, AFrameWithoutAnExposureIsSaidAndSurvived) {
+  ASSERT_TRUE(pipeline_.start(source_, path(64)));
+  for (const double exposure_us : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    source_->give(kFormat, 1500, exposure_us);
+    EXPECT_TRUE(eventually([&] {
+      return pipeline_.view().mismatch.find("exposure_us") != std::string::npos;
+    })) << exposure_us;
+  }
+  EXPECT_EQ(pipeline_.view().path->published(), 0u);
+  source_->give(kFormat, 1500);
+  ASSERT_TRUE(published(0));
+  EXPECT_TRUE(eventually([&] { return pipeline_.view().mismatch.empty(); }));
+}
+
+// Two reloads in a row: the second keeps the source that the first has begun.
+TEST_F(PipelineTest, AReplacementThatStillWaitsKeepsItsSource) {
+  ASSERT_TRUE(pipeline_.start(source_, path(64)));
+  auto second = std::make_shared<HandFedSource>();
+  second->give({32, 32, PixelFormat::mono12}, 1500);
+  source_->hold();  // the frame path is inside of wait, so that both replacements find it there
+  ASSERT_TRUE(pipeline_.replace(second, path(64)));
+  ASSERT_TRUE(pipeline_.replace(nullptr, path(32)));
+  source_->go_on();
+  ASSERT_TRUE(published(0));
+  EXPECT_TRUE(source_->stopped);
+  EXPECT_EQ(pipeline_.view().source, second);
 }
 
 TEST_F(PipelineTest, HeartbeatTurnsWithoutFrames) {
