@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "daemon/record/recording_session.h"
+#include "daemon/record/take_name.h"
 
 namespace lightwell {
 
@@ -17,21 +18,6 @@ RecordedFrame recorded_frame(const FrameInfo& info) {
           .exposure_us = info.exposure_us,
           .gain_db = info.gain_db,
           .temperature_c = info.temperature_c};
-}
-
-Status check_take_name(const std::string& file) {
-  constexpr std::size_t kLongest = 200;  // leaves room within the 255 bytes of a file name
-  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  const bool plain =
-      std::none_of(file.begin(), file.end(), [&](char c) { return c == '/' || c == '\\' || control(c); });
-  if (plain && file.size() > 4 && file.size() <= kLongest && file.front() != '.' && file.ends_with(".mkv"))
-    return {};
-  std::string shown = file.substr(0, kLongest);
-  std::replace_if(shown.begin(), shown.end(), control, '?');
-  return Error{ErrorKind::usage,
-               "recording: file '" + shown +
-                   "' is not a plain name such as take.mkv (no folders, no leading dot, ends in "
-                   ".mkv, at most 200 bytes)"};
 }
 
 Recorder::Recorder(std::filesystem::path directory, std::size_t ring_bytes)
@@ -53,7 +39,7 @@ Status Recorder::start_at(const std::filesystem::path& path, const RecordingHead
   const std::lock_guard one_at_a_time(control_);
   auto previous = session();
   if (previous && previous->active())
-    return Error{ErrorKind::usage, "recording: " + previous->file() + " is being written; stop it first"};
+    return Error{ErrorKind::failed, "recording: " + previous->file() + " is being written; stop it first"};
   auto writer = RecordingWriter::create(path, header);
   if (!writer) return writer.error();
   constexpr std::size_t kFewest = 4, kMost = 256;
@@ -71,7 +57,7 @@ Status Recorder::start_at(const std::filesystem::path& path, const RecordingHead
 Status Recorder::stop() {
   const std::lock_guard one_at_a_time(control_);
   const auto ending = session();
-  if (!ending) return Error{ErrorKind::usage, "recording: none is being written"};
+  if (!ending) return Error{ErrorKind::failed, "recording: none is being written"};
   return ending->finish();
 }
 

@@ -28,13 +28,14 @@ class Recorder final : public FrameSink {
   explicit Recorder(std::filesystem::path directory, std::size_t ring_bytes = 24u << 20);
   ~Recorder() override;  // closes the take
 
-  // file: a plain name ending in .mkv, not there yet. usage: another name, or a take is being written;
-  // failed: as RecordingWriter::create. Frames of another format than the header's end the take. Any thread.
+  // file: a plain name (daemon/record/take_name.h), not there yet; else usage. failed: a take is being
+  // written, or as RecordingWriter::create. Frames of another format than the header's end the take. Any
+  // thread.
   Status start(const std::string& file, const RecordingHeader& header);
   // The same at a path of the caller's choice, for commands. Any name.
   Status start_at(const std::filesystem::path& path, const RecordingHeader& header);
   // Writes what waits, closes the take; says why where it is not whole, also where it has ended by itself.
-  // usage: none was begun. Any thread.
+  // failed: none was begun. Any thread.
   Status stop();
 
   // The frame path's thread. Incomplete frames are left out.
@@ -62,8 +63,5 @@ class Recorder final : public FrameSink {
   std::mutex live_mutex_;             // start holds it to change the pointer; the frame path only tries it
   std::shared_ptr<Session> live_;     // the same, for the frame path
 };
-
-// Whether a take may have this name inside the record directory; usage, naming what is wrong and allowed.
-Status check_take_name(const std::string& file);
 
 }  // namespace lightwell

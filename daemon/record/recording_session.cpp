@@ -32,7 +32,7 @@ void Recorder::Session::offer(const FrameInfo& info, std::span<const std::byte> 
 }
 
 Status Recorder::Session::finish() {
-  if (!thread_.joinable()) return Error{ErrorKind::usage, "recording: none is being written"};
+  if (!thread_.joinable()) return Error{ErrorKind::failed, "recording: none is being written"};
   accepting_.store(false, std::memory_order_release);
   stopping_.store(true, std::memory_order_release);
   wake_.release();

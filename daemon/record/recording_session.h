@@ -24,7 +24,7 @@ class Recorder::Session {
   ~Session();
 
   void offer(const FrameInfo& info, std::span<const std::byte> codes) noexcept;
-  // Writes what waits and closes; how the take ended. Once; usage from then on.
+  // Writes what waits and closes; how the take ended. Once; failed from then on.
   Status finish();
 
   [[nodiscard]] bool active() const noexcept { return !finished_.load(std::memory_order_acquire); }

@@ -7,9 +7,10 @@
 #include <mutex>
 #include <string>
 
-#include "daemon/pipeline/clock.h"
+#include "daemon/clock.h"
 #include "daemon/pipeline/snapshot.h"
 #include "daemon/pipeline/status.h"
+#include "daemon/record/take_name.h"
 
 namespace lightwell::test {
 
@@ -23,8 +24,7 @@ class FakeControl : public DaemonControl {
   }
   Status start_recording(const std::string& file) override {
     const std::scoped_lock lock(mutex_);
-    if (file.find('/') != std::string::npos || file.empty())
-      return Error{ErrorKind::usage, "'" + file + "' is not a plain name"};
+    if (const Status name = check_take_name(file); !name) return name;
     if (status_.recording.active)
       return Error{ErrorKind::failed, "already recording " + status_.recording.file};
     status_.recording = {.active = true, .file = file, .error = {}};

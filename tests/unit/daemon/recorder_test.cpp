@@ -91,10 +91,10 @@ TEST(Recorder, OneTakeAfterAnother) {
   const auto frames = test::take_frames(kFormat, 3);
   for (const char* file : {"a.mkv", "b.mkv"}) {
     ASSERT_TRUE(recorder.start(file, header()));
-    EXPECT_EQ(recorder.start("c.mkv", header()).error().kind, ErrorKind::usage);  // one at a time
+    EXPECT_EQ(recorder.start("c.mkv", header()).error().kind, ErrorKind::failed);  // one at a time
     for (const TakeFrame& frame : frames) recorder.offer(info_of(frame), frame.codes);
     ASSERT_TRUE(recorder.stop());
-    EXPECT_EQ(recorder.stop().error().kind, ErrorKind::usage);
+    EXPECT_EQ(recorder.stop().error().kind, ErrorKind::failed);
   }
   EXPECT_EQ(read_take(folder.path() / "a.mkv").frames.size(), 3u);
   EXPECT_EQ(read_take(folder.path() / "b.mkv").frames.size(), 3u);
@@ -121,7 +121,8 @@ TEST(Recorder, OnlyPlainNewNamesInsideItsDirectory) {
        {std::string(), std::string(".mkv"), std::string("take"), std::string("take.avi"),
         std::string("/etc/take.mkv"), std::string("../take.mkv"), std::string("a/b.mkv"),
         std::string(".hidden.mkv"), std::string("a\nb.mkv"), std::string("a\0b.mkv", 7),
-        std::string(300, 'x') + ".mkv"}) {
+        std::string("-a.mkv"), std::string("\xc3\xa9.mkv"), std::string("a;b.mkv"),
+        std::string(125, 'x') + ".mkv"}) {
     const Status status = recorder.start(file, header());
     ASSERT_FALSE(status) << file;
     EXPECT_EQ(status.error().kind, ErrorKind::usage) << file;

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/record/take_name.h"
+
+#include <algorithm>
+
+namespace lightwell {
+namespace {
+
+bool is_plain(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' ||
+         c == '-' || c == ' ';
+}
+
+}  // namespace
+
+Status check_take_name(const std::string& file) {
+  constexpr std::size_t kLongest = 128;
+  if (std::all_of(file.begin(), file.end(), is_plain) && file.size() > 4 && file.size() <= kLongest &&
+      file.front() != '.' && file.front() != '-' && file.ends_with(".mkv"))
+    return {};
+  std::string shown = file.substr(0, kLongest);
+  std::replace_if(
+      shown.begin(), shown.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return Error{ErrorKind::usage,
+               "recording: file '" + shown +
+                   "' is not a plain name such as take.mkv: letters, digits, '.', '_', '-' and "
+                   "spaces, no leading '.' or '-', ends in .mkv, 128 at most"};
+}
+
+}  // namespace lightwell

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "lighting/result.h"
+
+namespace lightwell {
+
+// Whether a take may have this name inside the record directory, where anybody on this machine may ask for
+// one: a plain name that no shell, terminal or file system takes for more (interface/openapi.yaml). usage,
+// naming what is wrong and allowed.
+Status check_take_name(const std::string& file);
+
+}  // namespace lightwell
