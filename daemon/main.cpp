@@ -16,9 +16,9 @@
 #include <exception>
 #include <thread>
 
+#include "daemon/clock.h"
 #include "daemon/configuration.h"
 #include "daemon/daemon.h"
-#include "daemon/pipeline/clock.h"
 
 // lightwelld: reads its configuration, runs the daemon, and turns signals into what they ask for.
 namespace {
@@ -67,10 +67,12 @@ void reload(Daemon& daemon, const Arguments& arguments) {
   sd_notifyf(0, "RELOADING=1\nMONOTONIC_USEC=%lld", static_cast<long long>(mono_now_ns() / 1000));
   const auto loaded = load_configuration(arguments.config, arguments.overrides());
   const Status done = loaded ? daemon.reload(loaded->configuration) : Status(loaded.error());
-  if (done)
+  if (done) {
+    spdlog::set_level(spdlog::level::from_str(loaded->configuration.log.level));
     spdlog::info("configuration reloaded");
-  else
+  } else {
     spdlog::error("configuration not reloaded, the old one goes on: {}", done.error().message);
+  }
   sd_notify(0, "READY=1");
 }
 

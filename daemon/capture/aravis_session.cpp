@@ -8,7 +8,6 @@
 #include <net/if.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -24,15 +23,10 @@
 #include "daemon/capture/buffer_pool.h"
 #include "daemon/capture/glib_error.h"
 #include "daemon/capture/socket_buffer.h"
+#include "daemon/clock.h"
 
 namespace lightwell {
 namespace {
-
-std::int64_t mono_now_ns() {
-  timespec t{};
-  ::clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
-}
 
 Error camera_error(const char* what, const GlibError& error) {
   return {ErrorKind::failed, std::string(what) + ": " + error.text()};
@@ -263,21 +257,30 @@ Status AravisSession::read_back() {
 }
 
 bool AravisSession::refresh() {
-  GlibError error;
   ArvCamera* camera = handles_->camera;
-  const auto read = [&](bool available, double absent, auto get) {
-    return available && !error ? get() : absent;
+  bool answered = true;
+  // A camera that does not answer must not pass for one without the feature.
+  const auto read = [&](auto is_available, double absent, auto get) {
+    GlibError error;
+    const bool available = is_available(error.out());
+    const double value = available && !error ? get(error.out()) : absent;
+    answered = answered && !error;
+    return value;
   };
-  settings_.exposure_us = read(arv_camera_is_exposure_time_available(camera, nullptr), 0,
-                               [&] { return arv_camera_get_exposure_time(camera, error.out()); });
-  settings_.gain_db = read(arv_camera_is_gain_available(camera, nullptr), 0,
-                           [&] { return arv_camera_get_gain(camera, error.out()); });
-  settings_.temperature_c =
-      static_cast<float>(read(arv_camera_is_feature_available(camera, "DeviceTemperature", nullptr),
-                              std::numeric_limits<double>::quiet_NaN(), [&] {
-                                return arv_camera_get_float(camera, "DeviceTemperature", error.out());
-                              }));
-  return !error;
+  const double exposure_us =
+      read([&](GError** e) { return arv_camera_is_exposure_time_available(camera, e); }, 0,
+           [&](GError** e) { return arv_camera_get_exposure_time(camera, e); });
+  const double gain_db = read([&](GError** e) { return arv_camera_is_gain_available(camera, e); }, 0,
+                              [&](GError** e) { return arv_camera_get_gain(camera, e); });
+  const double temperature_c =
+      read([&](GError** e) { return arv_camera_is_feature_available(camera, "DeviceTemperature", e); },
+           std::numeric_limits<double>::quiet_NaN(),
+           [&](GError** e) { return arv_camera_get_float(camera, "DeviceTemperature", e); });
+  if (!answered) return false;
+  settings_.exposure_us = exposure_us;
+  settings_.gain_db = gain_db;
+  settings_.temperature_c = static_cast<float>(temperature_c);
+  return true;
 }
 
 Status AravisSession::start() {

@@ -4,13 +4,13 @@
 
 #include <arpa/inet.h>
 #include <spdlog/spdlog.h>
-#include <time.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 
 #include "daemon/capture/gvcp.h"
+#include "daemon/clock.h"
 
 namespace lightwell {
 namespace {
@@ -25,13 +25,6 @@ constexpr auto kCloseWait = 800ms;  // a live camera lets go in a tenth of this;
 constexpr auto kFirstFrameLimit = 500ms;
 constexpr auto kSilenceMinimum = 150ms;  // below, a busy host would pass for a stalled camera
 constexpr auto kReopenMinimum = 1s;      // the device's own heartbeat is found missing after as long
-
-std::int64_t utc_minus_mono_ns() noexcept {
-  timespec utc{}, mono{};
-  ::clock_gettime(CLOCK_REALTIME, &utc);
-  ::clock_gettime(CLOCK_MONOTONIC, &mono);
-  return (static_cast<std::int64_t>(utc.tv_sec) - mono.tv_sec) * 1'000'000'000 + (utc.tv_nsec - mono.tv_nsec);
-}
 
 void give_lease_back(void* session, void* buffer) noexcept {
   static_cast<AravisSession*>(session)->give_back(buffer);
@@ -143,7 +136,7 @@ FrameInfo AravisSource::frame_info(const ReceivedFrame& frame, std::uint64_t seq
   const auto half_exposure = static_cast<std::int64_t>(settings_.exposure_us * 500);
   info.capture_mono_ns = std::max(end_of_exposure - half_exposure, last_capture_ns_ + 1);
   last_capture_ns_ = info.capture_mono_ns;
-  info.capture_utc_ns = info.capture_mono_ns + utc_minus_mono_ns();
+  info.capture_utc_ns = info.capture_mono_ns + (utc_now_ns() - mono_now_ns());
   info.exposure_us = settings_.exposure_us;
   info.gain_db = settings_.gain_db;
   info.temperature_c = settings_.temperature_c;

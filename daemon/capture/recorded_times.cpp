@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/pipeline/clock.h"
+#include "daemon/clock.h"
 
 namespace lightwell {
 namespace {

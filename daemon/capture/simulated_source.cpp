@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "daemon/capture/buffer_pool.h"
+#include "daemon/clock.h"
 #include "daemon/simulator/frame_generator.h"
 #include "daemon/simulator/probe_setup.h"
 
@@ -26,12 +27,6 @@ using Clock = std::chrono::steady_clock;  // CLOCK_MONOTONIC
 
 std::int64_t ns_of(Clock::time_point t) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(t.time_since_epoch()).count();
-}
-
-std::int64_t utc_now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
 }
 
 Result<simulator::ProbeSetup> set_up(const std::string& name, const CaptureOptions& options) {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "daemon/pipeline/clock.h"
+#include "daemon/clock.h"
 
 namespace lightwell {
 namespace {

@@ -7,19 +7,13 @@
 #include <cmath>
 #include <cstring>
 
+#include "daemon/clock.h"
+
 namespace lightwell::simulator {
 namespace {
 
 std::int64_t real_now_us() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
-std::int64_t mono_now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
+  return utc_now_ns() / 1000;
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <time.h>
 
 #include <algorithm>
 #include <chrono>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "daemon/capture/capture_source.h"
+#include "daemon/clock.h"
 #include "tests/support/allocation_counter.h"
 #include "tests/support/eventually.h"
 
@@ -55,16 +55,6 @@ class CaptureContract : public testing::Test {
   }
   static bool equal(const FrameLease& lease, const std::vector<std::byte>& bytes) {
     return std::equal(lease.bytes().begin(), lease.bytes().end(), bytes.begin(), bytes.end());
-  }
-  static std::int64_t mono_now_ns() {
-    timespec t{};
-    ::clock_gettime(CLOCK_MONOTONIC, &t);
-    return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
-  }
-  static std::int64_t utc_now_ns() {
-    timespec t{};
-    ::clock_gettime(CLOCK_REALTIME, &t);
-    return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
   }
 
   Subject subject_;

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "daemon/pipeline/clock.h"
+#include "daemon/clock.h"
 #include "tests/support/allocation_counter.h"
 
 namespace lightwell {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "daemon/capture/recorded_times.h"
-#include "daemon/pipeline/clock.h"
+#include "daemon/clock.h"
 #include "tests/support/eventually.h"
 #include "tests/support/takes.h"
 #include "tests/support/temporary_folder.h"
