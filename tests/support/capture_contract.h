@@ -77,9 +77,9 @@ TYPED_TEST_P(CaptureContract, SequenceAndTimesIncreaseAndLieInThePast) {
       EXPECT_GT(info.received_mono_ns, last.received_mono_ns);
     }
     EXPECT_LE(info.capture_mono_ns, info.received_mono_ns);
-    EXPECT_LE(info.received_mono_ns, this->mono_now_ns());
+    EXPECT_LE(info.received_mono_ns, mono_now_ns());
     EXPECT_GT(info.capture_utc_ns, 0);
-    EXPECT_LE(info.capture_utc_ns, this->utc_now_ns());
+    EXPECT_LE(info.capture_utc_ns, utc_now_ns());
     last = info;
   }
 }
