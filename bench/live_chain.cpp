@@ -77,12 +77,13 @@ int run(const Arguments& a, const std::filesystem::path& bin) {
   const test::TemporaryFolder folder;
   const auto path = [&](const char* name) { return (folder.path() / name).string(); };
   const int domain = 100 + static_cast<int>(getpid()) % 100;
-  const std::string address = "127.88." + std::to_string(getpid() / 250 % 250) + "." + std::to_string(2 + getpid() % 250);
+  const std::string address =
+      "127.88." + std::to_string(getpid() / 250 % 250) + "." + std::to_string(2 + getpid() % 250);
 
-  test::ChildProcess camera(
-      Words{(bin / "lightwell-camera").string(), "--address", address, "--scenario", a.scenario, "--size", a.size,
-            "--pixel-format", a.pixel_format, "--rate", std::to_string(a.rate), "--write-calibration", path("calibration")},
-      path("camera.log"));
+  test::ChildProcess camera(Words{(bin / "lightwell-camera").string(), "--address", address, "--scenario",
+                                  a.scenario, "--size", a.size, "--pixel-format", a.pixel_format, "--rate",
+                                  std::to_string(a.rate), "--write-calibration", path("calibration")},
+                            path("camera.log"));
   if (!camera.wait_for_line("ready")) return fail("camera: " + camera.stderr_text());
   std::ofstream(path("config")) << "[http]\nlisten = \"127.0.0.1:0\"\n[dds]\ndomain = " << domain << "\n";
   test::ChildProcess daemon(Words{(bin / "lightwelld").string(), "--config", path("config"), "--source",
@@ -104,8 +105,9 @@ int run(const Arguments& a, const std::filesystem::path& bin) {
   std::unique_ptr<test::ChildProcess> renderer;
   if (a.renderer)
     renderer = std::make_unique<test::ChildProcess>(
-        Words{(bin / "lightwell-render").string(), "--scene", (bin / "../share/lightwell/stage.gltf").string(), "--live",
-              "--domain", std::to_string(domain), "--headless", "--size", "320x240", "--shadow-maps", "72", "--seconds",
+        Words{(bin / "lightwell-render").string(), "--scene",
+              (bin / "../share/lightwell/stage.gltf").string(), "--live", "--domain", std::to_string(domain),
+              "--headless", "--size", "320x240", "--shadow-maps", "72", "--seconds",
               std::to_string(a.seconds), "--stats", path("stats.json")},
         path("render.log"));
 
@@ -119,7 +121,8 @@ int run(const Arguments& a, const std::filesystem::path& bin) {
   auto next_look = start + std::chrono::seconds(10);
   while (std::chrono::duration<double>(Clock::now() - start).count() < a.seconds) {
     if ((*reader)->take(frame, std::chrono::milliseconds(200)))
-      photon_ms.push_back(static_cast<double>(frame.header.publish_mono_ns - frame.header.capture_mono_ns) * 1e-6);
+      photon_ms.push_back(static_cast<double>(frame.header.publish_mono_ns - frame.header.capture_mono_ns) *
+                          1e-6);
     if (Clock::now() < next_look) continue;
     next_look += std::chrono::seconds(10);
     const auto latency = status_of(http).at("latency_ms");
@@ -134,25 +137,39 @@ int run(const Arguments& a, const std::filesystem::path& bin) {
   };
 
   nlohmann::json result = {
-      {"size", a.size}, {"pixel_format", a.pixel_format}, {"scenario", a.scenario}, {"rate_hz", a.rate},
+      {"size", a.size},
+      {"pixel_format", a.pixel_format},
+      {"scenario", a.scenario},
+      {"rate_hz", a.rate},
       {"seconds", seconds},
       {"published", after.at("published").get<std::int64_t>() - before.at("published").get<std::int64_t>()},
-      {"published_hz",
-       static_cast<double>(after.at("published").get<std::int64_t>() - before.at("published").get<std::int64_t>()) / seconds},
-      {"lost", gained("lost")}, {"incomplete", gained("incomplete")}, {"skipped", gained("skipped")},
+      {"published_hz", static_cast<double>(after.at("published").get<std::int64_t>() -
+                                           before.at("published").get<std::int64_t>()) /
+                           seconds},
+      {"lost", gained("lost")},
+      {"incomplete", gained("incomplete")},
+      {"skipped", gained("skipped")},
       {"received_to_published_ms", {{"p50", worst_p50}, {"p99", worst_p99}}},
       {"mid_exposure_to_published_ms", {{"p50", quantile(photon_ms, .5)}, {"p99", quantile(photon_ms, .99)}}},
-      {"develop_ms", after.at("develop_ms")}, {"lights_ms", after.at("lights_ms")}, {"lights", frame.lights.size()},
-      {"daemon", {{"rss_mb_start", daemon_before.rss_mb}, {"rss_mb_end", daemon_after.rss_mb},
-                  {"cores", (daemon_after.cpu_s - daemon_before.cpu_s) / seconds}}},
+      {"develop_ms", after.at("develop_ms")},
+      {"lights_ms", after.at("lights_ms")},
+      {"lights", frame.lights.size()},
+      {"daemon",
+       {{"rss_mb_start", daemon_before.rss_mb},
+        {"rss_mb_end", daemon_after.rss_mb},
+        {"cores", (daemon_after.cpu_s - daemon_before.cpu_s) / seconds}}},
       {"camera", {{"cores", (camera_after.cpu_s - camera_before.cpu_s) / seconds}}}};
   if (renderer) {
     renderer->wait_for_end(30);
     std::ifstream stats(path("stats.json"));
     const auto s = nlohmann::json::parse(stats, nullptr, false);
     if (s.is_discarded()) return fail("renderer: " + renderer->stderr_text());
-    result["renderer"] = {{"hz", s.at("frames").get<double>() / a.seconds}, {"ms", s.at("ms")}, {"cpu_ms", s.at("cpu_ms")},
-                          {"passes", s.at("passes")}, {"lights", s.at("lights")}, {"shadow_maps", s.at("shadow_maps")},
+    result["renderer"] = {{"hz", s.at("frames").get<double>() / a.seconds},
+                          {"ms", s.at("ms")},
+                          {"cpu_ms", s.at("cpu_ms")},
+                          {"passes", s.at("passes")},
+                          {"lights", s.at("lights")},
+                          {"shadow_maps", s.at("shadow_maps")},
                           {"gl_renderer", s.at("gl_renderer")}};
   }
   const std::string text = result.dump(2) + "\n";

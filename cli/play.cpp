@@ -24,8 +24,10 @@ struct Arguments {
 volatile std::sig_atomic_t interrupted = 0;
 
 Overrides overrides(const Arguments& a) {
-  Overrides given = {{"source.address", "recording:" + a.take}, {"source.speed", std::to_string(a.speed)},
-                     {"source.loop", a.loop ? "true" : "false"}, {"http.listen", a.listen},
+  Overrides given = {{"source.address", "recording:" + a.take},
+                     {"source.speed", std::to_string(a.speed)},
+                     {"source.loop", a.loop ? "true" : "false"},
+                     {"http.listen", a.listen},
                      {"dds.domain", std::to_string(a.domain)}};
   if (!a.calibration.empty()) given.emplace_back("calibration.directory", a.calibration);
   return given;
@@ -44,7 +46,8 @@ int run(const Arguments& a) {
   const DaemonStatus status = (*daemon)->status();
   (*daemon)->stop();
   std::fprintf(stderr, "%llu frames published\n", static_cast<unsigned long long>(status.published));
-  if (status.published == 0 && !status.alarm.empty()) return fail({ErrorKind::bad_input, a.take + ": " + status.alarm});
+  if (status.published == 0 && !status.alarm.empty())
+    return fail({ErrorKind::bad_input, a.take + ": " + status.alarm});
   return 0;
 }
 
@@ -54,10 +57,13 @@ Command add_play(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("play", "Publish a take's light as the daemon would");
   command->add_option("TAKE", arguments->take, "recording (.mkv)")->required();
-  command->add_option("--speed", arguments->speed, "1 as recorded, 0.5 half as fast, 0 as fast as it can, no frame skipped")
+  command
+      ->add_option("--speed", arguments->speed,
+                   "1 as recorded, 0.5 half as fast, 0 as fast as it can, no frame skipped")
       ->check(CLI::Range(0.0, 1000.0));
   command->add_flag("--loop", arguments->loop, "begin again at the end");
-  command->add_option("--calibration", arguments->calibration, "folder to use instead of the take's own calibration");
+  command->add_option("--calibration", arguments->calibration,
+                      "folder to use instead of the take's own calibration");
   command->add_option("--listen", arguments->listen, "ADDRESS:PORT of the page");
   command->add_option("--domain", arguments->domain, "DDS domain")->check(CLI::Range(0, 230));
   command->footer("Example: lightwell play take.mkv --loop --speed 0.5");

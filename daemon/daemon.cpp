@@ -126,11 +126,13 @@ Status Daemon::reload(const Configuration& wanted) {
   return {};
 }
 
+void Daemon::close_take() {
+  if (!parts_->recorder.stats().active) return;  // that none was begun is no failure here
+  if (const Status closed = parts_->recorder.stop(); !closed) spdlog::error("{}", closed.error().message);
+}
+
 void Daemon::stop() {
-  // The take first: nothing else can lose anything. That none was begun is no failure here.
-  if (parts_->recorder.stats().active) {
-    if (const Status closed = parts_->recorder.stop(); !closed) spdlog::error("{}", closed.error().message);
-  }
+  close_take();  // first: nothing else can lose anything
   parts_->pipeline.stop();
   parts_->snapshots.close();
   parts_->web.reset();

@@ -26,6 +26,7 @@ class Daemon final : public DaemonControl {
   // Lights, map, calibration and source change between two frames. What needs new sockets ([http], [dds],
   // [probe]) is refused, naming the key; nothing has changed then.
   Status reload(const Configuration& configuration);
+  void close_take();
   // Closes the take, then everything else. Idempotent.
   void stop();
 

@@ -10,6 +10,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -96,14 +97,19 @@ void serve(Daemon& daemon, const Arguments& arguments, int signals) {
   }
 }
 
-// Everything that must be closed well is closed within a second; a camera that died may keep Aravis busy for
-// longer, and nothing is lost by leaving it.
+// The take is closed first. A camera that died may keep Aravis busy for longer than a second, and nothing is lost by
+// leaving it; a disk that cannot close the take in that time loses its last half second, which is a failure.
 void stop(Daemon& daemon) {
   sd_notify(0, "STOPPING=1");
+  static std::atomic<bool> take_closed{false};
   std::thread([] {
     std::this_thread::sleep_for(std::chrono::milliseconds(900));
-    std::_Exit(0);
+    if (!take_closed)
+      std::fputs("lightwelld: the disk is too slow to close the take; `lightwell repair` mends it\n", stderr);
+    std::_Exit(take_closed ? 0 : static_cast<int>(ErrorKind::failed));
   }).detach();
+  daemon.close_take();
+  take_closed = true;
   daemon.stop();
 }
 

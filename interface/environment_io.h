@@ -13,9 +13,9 @@
 namespace lightwell {
 
 struct EnvironmentImage {
-  LatLongImage image;              // finite, ≥ 0
-  std::uint64_t not_finite = 0;    // values that were NaN or ±∞, read as 0
-  std::uint64_t negative = 0;      // values below 0, read as 0
+  LatLongImage image;            // finite, ≥ 0
+  std::uint64_t not_finite = 0;  // values that were NaN or ±∞, read as 0
+  std::uint64_t negative = 0;    // values below 0, read as 0
   // One line for a person where either count is positive, else empty.
   [[nodiscard]] std::string repaired(const std::filesystem::path& file) const;
 };

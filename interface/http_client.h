@@ -16,10 +16,10 @@ struct HttpRequest {
   std::string method = "GET";  // GET, HEAD, POST, PUT, DELETE, OPTIONS or PATCH
   std::string path = "/";      // with its query
   std::string body{};
-  std::string content_type = "application/json";             // of the body
+  std::string content_type = "application/json";               // of the body
   std::vector<std::pair<std::string, std::string>> headers{};  // beside Host, Content-Length, Content-Type
-  std::chrono::milliseconds timeout{5000};                   // of the whole exchange
-  std::size_t body_limit_bytes = 64u << 20;                  // of the answer
+  std::chrono::milliseconds timeout{5000};                     // of the whole exchange
+  std::size_t body_limit_bytes = 64u << 20;                    // of the answer
 };
 
 struct HttpResponse {

@@ -16,7 +16,8 @@ struct Calibration {
   Lens lens;
   FlatField flat;
   Eigen::Matrix3d rec709_from_camera = Eigen::Matrix3d::Identity();  // colour cameras only
-  std::string id;  // 16 hex digits over the content; travels with every light set (interface/calibration_io.h)
+  std::string
+      id;  // 16 hex digits over the content; travels with every light set (interface/calibration_io.h)
 };
 
 }  // namespace lightwell

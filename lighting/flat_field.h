@@ -13,8 +13,8 @@ namespace lightwell {
 
 // What differs from pixel to pixel.
 struct FlatField {
-  std::array<int, 2> image_size = {0, 0};    // width, height; {0,0}: no fixed pattern for any size
-  std::vector<float> offset_codes;           // [height][width], added by the sensor to the ideal code; empty: none
+  std::array<int, 2> image_size = {0, 0};  // width, height; {0,0}: no fixed pattern for any size
+  std::vector<float> offset_codes;  // [height][width], added by the sensor to the ideal code; empty: none
   std::array<double, 3> vignetting = {0, 0, 0};  // transmission T(θ) = 1 + v1 θ² + v2 θ⁴ + v3 θ⁶, in (0, 1]
 
   [[nodiscard]] double transmission(double theta_rad) const {

@@ -17,10 +17,12 @@ struct LatLongImage {
   std::vector<Rgb> pixels;  // [height][width], linear Rec. 709
 
   [[nodiscard]] const Rgb& at(int x, int y) const {
-    return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+    return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                  static_cast<std::size_t>(x)];
   }
   [[nodiscard]] Rgb& at(int x, int y) {
-    return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+    return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                  static_cast<std::size_t>(x)];
   }
   // Exact solid angle of a pixel in row y.
   [[nodiscard]] double pixel_solid_angle_sr(int y) const;

@@ -34,8 +34,12 @@ struct Lens {
   [[nodiscard]] double pixel_solid_angle_sr(const Vec2d& pixel) const;
 };
 
-inline Vec3d world_from_camera(const Vec3d& d) { return {d.x(), d.z(), -d.y()}; }
-inline Vec3d camera_from_world(const Vec3d& d) { return {d.x(), -d.z(), d.y()}; }
+inline Vec3d world_from_camera(const Vec3d& d) {
+  return {d.x(), d.z(), -d.y()};
+}
+inline Vec3d camera_from_world(const Vec3d& d) {
+  return {d.x(), -d.z(), d.y()};
+}
 
 // Sizes, finiteness, positive focal length, θd increasing over the field; the error names the field, value and range.
 Status check(const Lens& lens);

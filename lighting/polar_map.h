@@ -30,7 +30,8 @@ struct PolarGrid {
     return 2 * std::sin((a + b) / 2) * std::sin((b - a) / 2) * 2 * kPi / sectors;
   }
   [[nodiscard]] Vec3d bin_direction(int ring, int sector) const {
-    return direction_from_spherical({theta_max_rad * (ring + 0.5) / rings, 2 * kPi * (sector + 0.5) / sectors});
+    return direction_from_spherical(
+        {theta_max_rad * (ring + 0.5) / rings, 2 * kPi * (sector + 0.5) / sectors});
   }
   friend bool operator==(const PolarGrid&, const PolarGrid&) = default;
 };
@@ -44,8 +45,8 @@ struct PolarGrid {
 // and solid angle 0.
 struct PolarMap {
   PolarGrid grid;
-  int channels = 1;                    // 1: monochrome, meaning R = G = B; 3: linear Rec. 709
-  std::vector<float> radiance;         // [channels][rings][sectors], cd/m², finite and ≥ 0
+  int channels = 1;             // 1: monochrome, meaning R = G = B; 3: linear Rec. 709
+  std::vector<float> radiance;  // [channels][rings][sectors], cd/m², finite and ≥ 0
   // [channels][rings][sectors], largest pixel radiance of the bin, never below its mean. A pixel smaller than the bin's
   // largest counts in proportion: within 1 % inside the field, less for pixels that its border cuts. In colour, the
   // channels' own peaks through the camera's matrix.

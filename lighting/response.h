@@ -34,10 +34,11 @@ struct LinearResponse {
 // The closed set of response models, with what every model shares.
 struct Response {
   std::variant<LogResponse, LinearResponse> model;
-  int bits = 12;                          // codes are 0 … 2^bits − 1
-  double black_code = 0;                  // smallest usable code
-  double clip_code = 4095;                // codes at and above are clipped
-  double reference_exposure_us = 10000;   // exposure the model holds for; radiance scales with its ratio to the frame's
+  int bits = 12;            // codes are 0 … 2^bits − 1
+  double black_code = 0;    // smallest usable code
+  double clip_code = 4095;  // codes at and above are clipped
+  double reference_exposure_us =
+      10000;  // exposure the model holds for; radiance scales with its ratio to the frame's
 
   [[nodiscard]] double code(double luminance_cd_m2) const {
     return std::visit([&](const auto& m) { return m.code(luminance_cd_m2); }, model);

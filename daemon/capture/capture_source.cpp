@@ -6,12 +6,18 @@ namespace lightwell {
 
 const char* name(SourceState state) {
   switch (state) {
-    case SourceState::no_device: return "no device";
-    case SourceState::opening: return "opening";
-    case SourceState::streaming: return "streaming";
-    case SourceState::stalled: return "stalled";
-    case SourceState::wrong_format: return "wrong format";
-    case SourceState::ended: return "ended";
+    case SourceState::no_device:
+      return "no device";
+    case SourceState::opening:
+      return "opening";
+    case SourceState::streaming:
+      return "streaming";
+    case SourceState::stalled:
+      return "stalled";
+    case SourceState::wrong_format:
+      return "wrong format";
+    case SourceState::ended:
+      return "ended";
   }
   return "unknown";
 }

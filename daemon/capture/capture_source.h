@@ -18,14 +18,14 @@ namespace lightwell {
 // What is known of a frame beside its codes.
 struct FrameInfo {
   FrameFormat format;
-  std::uint64_t sequence = 0;          // counts the camera's frames, gaps are lost frames; never repeats in a session
-  std::int64_t capture_mono_ns = 0;    // mid-exposure, CLOCK_MONOTONIC
-  std::int64_t received_mono_ns = 0;   // the whole frame was in memory
-  std::int64_t capture_utc_ns = 0;     // label: UTC of capture_mono_ns
+  std::uint64_t sequence = 0;  // counts the camera's frames, gaps are lost frames; never repeats in a session
+  std::int64_t capture_mono_ns = 0;   // mid-exposure, CLOCK_MONOTONIC
+  std::int64_t received_mono_ns = 0;  // the whole frame was in memory
+  std::int64_t capture_utc_ns = 0;    // label: UTC of capture_mono_ns
   double exposure_us = 0;
   double gain_db = 0;
-  float temperature_c = 0;             // NaN where the camera has none
-  bool complete = true;                // false: packets missing, bytes undefined; never given to the radiometer
+  float temperature_c = 0;  // NaN where the camera has none
+  bool complete = true;     // false: packets missing, bytes undefined; never given to the radiometer
 };
 
 // A frame in the source's own buffer; the buffer goes back when the lease ends. Movable, not copyable.
@@ -80,10 +80,10 @@ const char* name(SourceState state);
 
 // Counts since start; read from any thread.
 struct CaptureCounters {
-  std::uint64_t received = 0;     // complete frames
-  std::uint64_t skipped = 0;      // complete, but a fresher one was taken instead
-  std::uint64_t lost = 0;         // gaps in the camera's sequence
-  std::uint64_t incomplete = 0;   // packets missing
+  std::uint64_t received = 0;    // complete frames
+  std::uint64_t skipped = 0;     // complete, but a fresher one was taken instead
+  std::uint64_t lost = 0;        // gaps in the camera's sequence
+  std::uint64_t incomplete = 0;  // packets missing
   std::uint64_t reconnects = 0;
 };
 
@@ -113,20 +113,21 @@ class CaptureSource {
 };
 
 struct CaptureOptions {
-  int width = 0;             // 0: as the camera has it
+  int width = 0;  // 0: as the camera has it
   int height = 0;
   std::string pixel_format;  // empty: as the camera has it
   double rate_hz = 0;        // 0: as the camera has it
   double exposure_us = 0;    // 0: as the camera has it
   int buffers = 8;
-  int packet_size = 9000;          // GigE Vision, bytes; 1400 beyond loopback without jumbo frames
+  int packet_size = 9000;  // GigE Vision, bytes; 1400 beyond loopback without jumbo frames
   int socket_buffer_bytes = 8 << 20;
-  double speed = 1;          // recording: 1 = as recorded, 0 = as fast as frames are taken (lossless)
-  bool loop = false;         // recording
+  double speed = 1;   // recording: 1 = as recorded, 0 = as fast as frames are taken (lossless)
+  bool loop = false;  // recording
 };
 
 // source: aravis:ADDRESS | recording:FILE | simulated:NAME (contract). Fails with usage for an unknown kind, naming what
 // is allowed.
-Result<std::unique_ptr<CaptureSource>> make_capture_source(const std::string& source, const CaptureOptions& options);
+Result<std::unique_ptr<CaptureSource>> make_capture_source(const std::string& source,
+                                                           const CaptureOptions& options);
 
 }  // namespace lightwell

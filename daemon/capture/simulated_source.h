@@ -16,7 +16,8 @@ namespace lightwell {
 // Options honoured: width, height (640×480 where 0), pixel_format (Mono12), rate_hz (30), exposure_us (the scene's own),
 // buffers. Scene time starts with start(); frames leave at the end of their exposure, at multiples of the period.
 // usage: unknown name, size, format or rate out of range; bad_input: an image that cannot be read.
-Result<std::unique_ptr<CaptureSource>> make_simulated_source(const std::string& name, const CaptureOptions& options);
+Result<std::unique_ptr<CaptureSource>> make_simulated_source(const std::string& name,
+                                                             const CaptureOptions& options);
 
 // The exact calibration of the camera that make_simulated_source gives for the same arguments, so that `simulated:`
 // needs no calibration folder.

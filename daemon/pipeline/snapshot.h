@@ -23,7 +23,7 @@ struct Snapshot {
   std::int64_t capture_utc_ns = 0;
   std::int64_t received_mono_ns = 0;
   std::int64_t publish_mono_ns = 0;  // the lights were ready
-  FrameFormat format;  // of the raw frame
+  FrameFormat format;                // of the raw frame
   double exposure_us = 0;
   std::array<char, 17> calibration_id{};  // zero-terminated
   Coverage coverage = Coverage::hemisphere;

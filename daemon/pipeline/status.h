@@ -34,8 +34,8 @@ struct DaemonStatus {
     std::uint64_t frames = 0;
     std::uint64_t dropped = 0;  // frames the disk was too slow for
     std::uint64_t bytes = 0;
-    std::string error;  // why the last recording stopped by itself, else empty
-    std::string directory{};       // absolute, where takes are written
+    std::string error;        // why the last recording stopped by itself, else empty
+    std::string directory{};  // absolute, where takes are written
   } recording;
   std::string alarm;  // the worst thing that is wrong, in words; empty when nothing is
 };

@@ -88,7 +88,7 @@ vec3 metallic_roughness(Surface s, vec3 to_light, float cosine) {
   float distribution = s.alpha2 / (kPi * t * t);
   float visibility = 0.5 / (cosine * sqrt(s.alpha2 + (1.0 - s.alpha2) * nv * nv) +
                             nv * sqrt(s.alpha2 + (1.0 - s.alpha2) * cosine * cosine));
-  vec3 fresnel = s.specular + (1.0 - s.specular) * pow(1.0 - vh, 5.0);
+  vec3 fresnel = s.specular + (1.0 - s.specular) * pow(1.0 - min(vh, 1.0), 5.0);
   return (1.0 - fresnel) * s.diffuse / kPi + fresnel * distribution * visibility;
 }
 

@@ -25,7 +25,8 @@ ChildProcess::ChildProcess(std::vector<std::string> command, std::filesystem::pa
   if (pid_ == 0) {
     ::dup2(log, STDERR_FILENO);
     if (limits.file_bytes) {
-      ::signal(SIGXFSZ, SIG_IGN);  // stays ignored across exec: writing past the limit fails instead of killing
+      ::signal(SIGXFSZ,
+               SIG_IGN);  // stays ignored across exec: writing past the limit fails instead of killing
       const rlimit limit{*limits.file_bytes, *limits.file_bytes};
       ::setrlimit(RLIMIT_FSIZE, &limit);
     }
@@ -41,7 +42,9 @@ ChildProcess::~ChildProcess() {
   wait_for_end();
 }
 
-void ChildProcess::send(int signal) const { ::kill(pid_, signal); }
+void ChildProcess::send(int signal) const {
+  ::kill(pid_, signal);
+}
 
 std::optional<int> ChildProcess::poll_end() {
   int status = 0;
@@ -50,7 +53,9 @@ std::optional<int> ChildProcess::poll_end() {
   return end_;
 }
 
-bool ChildProcess::running() { return !poll_end(); }
+bool ChildProcess::running() {
+  return !poll_end();
+}
 
 std::optional<int> ChildProcess::wait_for_end(int seconds) {
   eventually([&] { return poll_end().has_value(); }, std::chrono::seconds(seconds));

@@ -34,11 +34,12 @@ class Chain : public testing::Test {
   static std::string program(const std::string& name) { return std::string(LIGHTWELL_BIN_DIR) + "/" + name; }
 
   void start_camera(const Words& options) {
-    Words command = {program("lightwell-camera"), "--address", address_, "--write-calibration", calibration().string(),
-                     "--truth", truth().string()};
+    Words command = {program("lightwell-camera"), "--address", address_,        "--write-calibration",
+                     calibration().string(),      "--truth",   truth().string()};
     command.insert(command.end(), options.begin(), options.end());
     camera_ = std::make_unique<ChildProcess>(command, folder_.path() / "camera.log");
-    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(calibration() / "lens.json") || !camera_->running(); }));
+    ASSERT_TRUE(eventually(
+        [&] { return std::filesystem::exists(calibration() / "lens.json") || !camera_->running(); }));
     ASSERT_TRUE(camera_->running()) << camera_->stderr_text();
   }
 
@@ -89,7 +90,8 @@ class Chain : public testing::Test {
     std::ifstream file(truth());
     nlohmann::json last;
     for (std::string line; std::getline(file, line);)
-      if (auto parsed = nlohmann::json::parse(line, nullptr, false); !parsed.is_discarded()) last = std::move(parsed);
+      if (auto parsed = nlohmann::json::parse(line, nullptr, false); !parsed.is_discarded())
+        last = std::move(parsed);
     return last;
   }
 

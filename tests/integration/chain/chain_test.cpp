@@ -23,16 +23,16 @@ TEST_F(Chain, StaticIlluminanceIsTheCamerasTruth) {
   start_camera({"--scenario", "static", "--size", "640x480", "--rate", "30", "--noise", "0"});
   start_daemon();
   ASSERT_TRUE(published_reaches(20)) << daemon_->stderr_text();
-  expect_within(rgb_of(get("/api/v1/lights").at("total_illuminance")), rgb_of(last_truth().at("total_illuminance")),
-                0.01);
+  expect_within(rgb_of(get("/api/v1/lights").at("total_illuminance")),
+                rgb_of(last_truth().at("total_illuminance")), 0.01);
 }
 
 TEST_F(Chain, StaticIlluminanceInColourWithNoise) {
   start_camera({"--scenario", "static", "--size", "640x480", "--rate", "30", "--pixel-format", "BayerRG12"});
   start_daemon();
   ASSERT_TRUE(published_reaches(20)) << daemon_->stderr_text();
-  expect_within(rgb_of(get("/api/v1/lights").at("total_illuminance")), rgb_of(last_truth().at("total_illuminance")),
-                0.02);
+  expect_within(rgb_of(get("/api/v1/lights").at("total_illuminance")),
+                rgb_of(last_truth().at("total_illuminance")), 0.02);
 }
 
 TEST_F(Chain, LightsSumToTheTotalAndStandAboveTheHorizon) {
@@ -49,7 +49,8 @@ TEST_F(Chain, LightsSumToTheTotalAndStandAboveTheHorizon) {
     sum += rgb_of(light.at("illuminance"));
   }
   EXPECT_LE(set.at("lights").size(), 72u);
-  expect_within(sum, rgb_of(set.at("total_illuminance")), 1e-4);  // floats written and read exactly; sums of 72
+  expect_within(sum, rgb_of(set.at("total_illuminance")),
+                1e-4);  // floats written and read exactly; sums of 72
 }
 
 TEST_F(Chain, CameraKilledIsSaidAndLightReturnsWithTheCamera) {
@@ -73,8 +74,15 @@ TEST_F(Chain, CameraReplacedByOneOfAnotherSizeIsNamed) {
   ASSERT_TRUE(published_reaches(10));
   camera_->send(SIGTERM);
   ASSERT_EQ(camera_->wait_for_end(), 0);
-  Words command = {program("lightwell-camera"), "--address", address_, "--scenario", "static", "--size", "160x120",
-                   "--rate", "30"};
+  Words command = {program("lightwell-camera"),
+                   "--address",
+                   address_,
+                   "--scenario",
+                   "static",
+                   "--size",
+                   "160x120",
+                   "--rate",
+                   "30"};
   camera_ = std::make_unique<ChildProcess>(command, folder_.path() / "camera.log");
   EXPECT_TRUE(eventually([&] { return status().value("alarm", "").find("160") != std::string::npos; },
                          std::chrono::seconds(60)))
@@ -127,7 +135,8 @@ TEST_F(Chain, ReloadChangesTheLightsWithoutAPause) {
   ASSERT_TRUE(published_reaches(10));
   write_configuration("[lights]\ncount = 9\nclusters = 0\n");
   daemon_->send(SIGHUP);
-  EXPECT_TRUE(eventually([&] { return get("/api/v1/lights").at("lights").size() == 9; })) << daemon_->stderr_text();
+  EXPECT_TRUE(eventually([&] { return get("/api/v1/lights").at("lights").size() == 9; }))
+      << daemon_->stderr_text();
   EXPECT_EQ(status().at("capture").at("reconnects"), 0);
   write_configuration("[lights]\ncount = 0\n");
   daemon_->send(SIGHUP);

@@ -16,7 +16,9 @@ struct RealMap {
   const char* name;
   const char* file;
 };
-void PrintTo(const RealMap& map, std::ostream* out) { *out << map.name; }
+void PrintTo(const RealMap& map, std::ostream* out) {
+  *out << map.name;
+}
 
 class RealMaps : public Chain, public testing::WithParamInterface<RealMap> {};
 
@@ -55,7 +57,8 @@ TEST_P(RealMaps, GiveRightLight) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Captured, RealMaps,
-                         testing::Values(RealMap{"sun", "kloppenheim_05_1k.hdr"}, RealMap{"windows", "lebombo_1k.hdr"},
+                         testing::Values(RealMap{"sun", "kloppenheim_05_1k.hdr"},
+                                         RealMap{"windows", "lebombo_1k.hdr"},
                                          RealMap{"night", "moonless_golf_1k.hdr"},
                                          RealMap{"studio", "studio_small_03_1k.hdr"},
                                          RealMap{"overcast", "potsdamer_platz_1k.hdr"}),

@@ -60,7 +60,8 @@ TEST(Replay, EveryFrameMeasuresTheIlluminanceTheCameraWasShown) {
   for (std::size_t shift = 0; shift + frames.size() <= truth.size(); ++shift) {
     double worst = 0;
     for (std::size_t i = 0; i < frames.size(); ++i)
-      worst = std::max(worst, std::abs(static_cast<double>(frames[i].measured_illuminance) / truth[shift + i] - 1));
+      worst = std::max(worst,
+                       std::abs(static_cast<double>(frames[i].measured_illuminance) / truth[shift + i] - 1));
     best = std::min(best, worst);
   }
   EXPECT_LT(best, 0.02);

@@ -18,7 +18,9 @@ DaemonStatus well() {
   return status;
 }
 
-TEST(Alarm, NothingWrongIsEmpty) { EXPECT_EQ(alarm_for(well()), ""); }
+TEST(Alarm, NothingWrongIsEmpty) {
+  EXPECT_EQ(alarm_for(well()), "");
+}
 
 TEST(Alarm, ADeadCameraComesBeforeEverythingElse) {
   DaemonStatus status = well();
