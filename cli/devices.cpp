@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <net/if.h>
+
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -57,6 +60,16 @@ void print(const GvcpDevice& device, const Result<CameraCapabilities>& camera) {
 }
 
 int run(const Options& options) {
+  for (const std::string& name : options.interfaces) {
+    if (::if_nametoindex(name.c_str()) != 0) continue;
+    std::fprintf(stderr, "lightwell: --interface %s: this machine has no network interface of that name\n",
+                 name.c_str());
+    return 2;
+  }
+  if (std::isnan(options.timeout_s)) {  // no bound of a range refuses it
+    std::fprintf(stderr, "lightwell: --timeout nan: allowed 0.05 to 60 s\n");
+    return 2;
+  }
   const auto timeout = std::chrono::milliseconds(static_cast<long>(options.timeout_s * 1000));
   const auto devices = gvcp_discover(timeout, options.interfaces);
   auto list = nlohmann::json::array();

@@ -109,6 +109,10 @@ Parsed parse_options(int argc, const char* const* argv) {
     if (error.get_exit_code() == 0) return {std::nullopt, app.exit(error)};
     return {std::nullopt, complain(error.what())};
   }
+  if (std::isnan(options.spin_deg))  // no bound of a range refuses it
+    return {std::nullopt, complain("--spin nan: must be -360 to 360 degrees")};
+  if (options.seconds && std::isnan(*options.seconds))
+    return {std::nullopt, complain("--seconds nan: must be 0 to 1e9")};
   if (!options.live && options.light_set.empty() && options.environment.empty())
     return {std::nullopt,
             complain("one of --live, --environment and --light-set must say where the light comes from")};
