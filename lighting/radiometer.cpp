@@ -125,8 +125,8 @@ Radiometer::Plan::Plan(const Calibration& calibration, const FrameFormat& frame_
   for (std::size_t c = 0; c < channels; ++c) {
     order_factors(cells.whole, false, c, whole[c]);
     order_factors(cells.parts, true, c, parts[c]);
-    // A segment's load may reach past its last sample, at the end of the window past the window.
-    window[c].assign(static_cast<std::size_t>(cells.window_rows) * cells.stride + 16, 0);
+    // A segment's load may reach past the window, and short cells are filled from there.
+    window[c].assign(static_cast<std::size_t>(cells.window_rows) * cells.stride + kWindowZeros, 0);
     part_sum[c].assign(cells.part_bin.size(), 0);
     part_peak[c].assign(cells.part_bin.size(), 0);
     if (channels == 3) {
@@ -221,8 +221,10 @@ void Radiometer::Plan::reduce(std::size_t batch, const CellPlan::Cells& order, c
   cell_batch.peak_scale = factors.peak_scale.data() + range.first_cell;
   cell_batch.toe = factors.toe.data() + range.first_cell;
   cell_batch.cells = range.cells;
-  const auto run = cells.lanes == 1 ? kernels->reduce_pixels : kernels->reduce;
-  run(cell_batch, window[channel].data(), {sums.data(), peaks.data()}, out);
+  if (cells.lanes == 1)
+    kernels->reduce_pixels(cell_batch, window[channel].data(), out);
+  else
+    kernels->reduce(cell_batch, window[channel].data(), {sums.data(), peaks.data()}, out);
 }
 
 void Radiometer::Plan::join_parts(std::size_t channel, const CellOutput& out) noexcept {

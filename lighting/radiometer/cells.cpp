@@ -8,12 +8,12 @@
 namespace lightwell::radiometer {
 namespace {
 
-constexpr std::size_t kWindowFloats =
-    65536;  // what a 16 bit index reaches: 256 KB, at home in a second level cache
+// What a 16 bit index reaches, 256 KB, at home in a second level cache; less the zeros behind the window.
+constexpr std::size_t kWindowFloats = 65536 - kWindowZeros;
 constexpr int kMostWindowRows = 64;
 // Segments pay from this many samples a run on (measured: bench/frame_suite.cpp); below, lists of single
 // pixels.
-constexpr double kShortRun = 3.0;
+constexpr double kShortRun = 4.5;
 
 // Neighbours of one row in one group.
 struct Run {
@@ -100,6 +100,40 @@ std::vector<std::vector<Cell>> make_cells(const PixelBins& bins, const std::vect
   return cells;
 }
 
+// One class for each number of segments, the segments of a cell after each other.
+void lay_out_segments(const CellPlan& plan, const std::vector<std::pair<std::uint32_t, const Cell*>>& batch,
+                      CellPlan::Cells& out) {
+  const std::size_t first_class = out.classes.size();
+  for (const auto& [slot, cell] : batch) {
+    const auto segments = static_cast<std::uint32_t>(cell->segments.size());
+    if (out.classes.size() == first_class || out.classes.back().segments != segments)
+      out.classes.push_back({segments, 0});
+    ++out.classes.back().cells;
+    for (const auto& [start, length] : cell->segments) {
+      out.start.push_back(start);
+      out.mask.push_back(static_cast<std::uint8_t>((length - 1) * plan.lanes * 4));
+    }
+  }
+}
+
+// One class for every eight cells, their pixels side by side; short cells are filled with the zeros behind
+// the window.
+void lay_out_pixels(const CellPlan& plan, const std::vector<std::pair<std::uint32_t, const Cell*>>& batch,
+                    CellPlan::Cells& out) {
+  const auto zero = static_cast<std::uint16_t>(static_cast<std::size_t>(plan.window_rows) * plan.stride);
+  for (std::size_t first = 0; first < batch.size(); first += 8) {
+    const std::size_t cells = std::min<std::size_t>(8, batch.size() - first);
+    const std::size_t longest = batch[first + cells - 1].second->segments.size();  // they stand sorted
+    out.classes.push_back({static_cast<std::uint32_t>(longest), 8});
+    for (std::size_t i = 0; i < longest; ++i)
+      for (std::size_t lane = 0; lane < 8; ++lane) {
+        const bool there = lane < cells && i < batch[first + lane].second->segments.size();
+        out.start.push_back(there ? batch[first + lane].second->segments[i].first : zero);
+        out.mask.push_back(0);
+      }
+  }
+}
+
 void lay_out(const CellPlan& plan, std::vector<std::pair<std::uint32_t, const Cell*>>& batch,
              CellPlan::Cells& out) {
   std::stable_sort(batch.begin(), batch.end(), [](const auto& a, const auto& b) {
@@ -110,19 +144,12 @@ void lay_out(const CellPlan& plan, std::vector<std::pair<std::uint32_t, const Ce
   range.first_segment = out.start.size();
   range.first_cell = out.slot.size();
   range.cells = batch.size();
+  (plan.lanes == 1 ? lay_out_pixels : lay_out_segments)(plan, batch, out);
+  range.classes = out.classes.size() - range.first_class;
   for (const auto& [slot, cell] : batch) {
-    const auto segments = static_cast<std::uint32_t>(cell->segments.size());
-    if (out.classes.size() == range.first_class || out.classes.back().segments != segments)
-      out.classes.push_back({segments, 0});
-    ++out.classes.back().cells;
-    for (const auto& [start, length] : cell->segments) {
-      out.start.push_back(start);
-      out.mask.push_back(static_cast<std::uint8_t>((length - 1) * plan.lanes * 4));
-    }
     out.slot.push_back(slot);
     out.group.push_back(cell->group);
   }
-  range.classes = out.classes.size() - range.first_class;
   out.slot.resize((out.slot.size() + 7) / 8 * 8, kNone);  // padding, never written through
   out.group.resize(out.slot.size(), kNone);
   out.batches.push_back(range);

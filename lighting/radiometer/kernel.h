@@ -28,8 +28,9 @@ struct LogCurve {
   std::uint16_t base = 0;
   int shift = 0;
 };
-inline constexpr int kOctave = 2048;      // steps of t
-inline constexpr int kMantissaShift = 5;  // fraction of t to 16 bits
+inline constexpr std::size_t kWindowZeros = 16;  // floats behind the window that stay 0
+inline constexpr int kOctave = 2048;             // steps of t
+inline constexpr int kMantissaShift = 5;         // fraction of t to 16 bits
 inline constexpr int kExponentBias = 127 - 16;
 // 65536 (2^x − 1) = x (c1 + x (c2 + x (c3 + x c4))), fitted with the truncating products it is evaluated
 // with, for the least relative error of 2^x over [0, 1): 1.6e-5.
@@ -80,9 +81,9 @@ struct Kernels {
                           const LogCurve& curve);
   void (*reduce)(const CellBatch& batch, const float* window, const CellScratch& scratch,
                  const CellOutput& out);
-  // The same for segments of one pixel, which suit small frames.
-  void (*reduce_pixels)(const CellBatch& batch, const float* window, const CellScratch& scratch,
-                        const CellOutput& out);
+  // The same for single pixels, which suit small frames: each class is eight cells, `start` holds the first
+  // pixel of all eight, then the second, …
+  void (*reduce_pixels)(const CellBatch& batch, const float* window, const CellOutput& out);
 };
 
 // nullptr where this build or this machine has no such instructions.

@@ -6,8 +6,6 @@
 #if defined(__x86_64__) && defined(__AVX2__)
 #include <immintrin.h>
 
-#include "lighting/radiometer/reduce_pixels.h"
-
 namespace lightwell::radiometer {
 namespace {
 
@@ -216,11 +214,20 @@ void reduce(const CellBatch& batch, const float* window, const CellScratch& scra
     finish(batch, i, horizontal_sums(scratch.sum + 8 * i), horizontal_maxima(scratch.peak + 8 * i), out);
 }
 
-void reduce_pixels(const CellBatch& batch, const float* window, const CellScratch& scratch,
-                   const CellOutput& out) {
-  sum_pixel_cells(batch, window, scratch);
-  for (std::size_t i = 0; i < batch.cells; i += 8)
-    finish(batch, i, _mm256_load_ps(scratch.sum + i), _mm256_load_ps(scratch.peak + i), out);
+void reduce_pixels(const CellBatch& batch, const float* window, const CellOutput& out) {
+  const std::uint16_t* start = batch.start;
+  for (std::size_t i = 0; i < batch.cells; i += 8) {
+    const std::uint32_t n = batch.classes[i / 8].segments;
+    __m256 sum = _mm256_setzero_ps();
+    __m256 top = sum;
+    for (std::uint32_t k = 0; k < n; ++k, start += 8) {
+      const __m256i pixels = _mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(start)));
+      const __m256 value = _mm256_i32gather_ps(window, pixels, 4);
+      sum = _mm256_add_ps(sum, value);
+      top = _mm256_max_ps(top, value);
+    }
+    finish(batch, i, sum, top, out);
+  }
 }
 
 }  // namespace

@@ -5,8 +5,6 @@
 #if defined(__aarch64__)
 #include <arm_neon.h>
 
-#include "lighting/radiometer/reduce_pixels.h"
-
 namespace lightwell::radiometer {
 namespace {
 
@@ -181,11 +179,29 @@ void reduce(const CellBatch& batch, const float* window, const CellScratch& scra
     finish(batch, i, vld1q_f32(scratch.sum + i), vld1q_f32(scratch.peak + i), out);
 }
 
-void reduce_pixels(const CellBatch& batch, const float* window, const CellScratch& scratch,
-                   const CellOutput& out) {
-  sum_pixel_cells(batch, window, scratch);
-  for (std::size_t i = 0; i < batch.cells; i += 4)
-    finish(batch, i, vld1q_f32(scratch.sum + i), vld1q_f32(scratch.peak + i), out);
+float32x4_t four(const float* window, const std::uint16_t* start) {
+  return float32x4_t{window[start[0]], window[start[1]], window[start[2]], window[start[3]]};
+}
+
+void reduce_pixels(const CellBatch& batch, const float* window, const CellOutput& out) {
+  const std::uint16_t* start = batch.start;
+  for (std::size_t i = 0; i < batch.cells; i += 8) {
+    const std::uint32_t n = batch.classes[i / 8].segments;
+    float32x4_t low = vdupq_n_f32(0);
+    float32x4_t high = low;
+    float32x4_t low_top = low;
+    float32x4_t high_top = low;
+    for (std::uint32_t k = 0; k < n; ++k, start += 8) {
+      const float32x4_t a = four(window, start);
+      const float32x4_t b = four(window, start + 4);
+      low = vaddq_f32(low, a);
+      high = vaddq_f32(high, b);
+      low_top = vmaxq_f32(low_top, a);
+      high_top = vmaxq_f32(high_top, b);
+    }
+    finish(batch, i, low, low_top, out);
+    if (i + 4 < batch.cells) finish(batch, i + 4, high, high_top, out);
+  }
 }
 
 }  // namespace

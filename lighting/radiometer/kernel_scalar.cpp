@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "lighting/radiometer/kernel.h"
-#include "lighting/radiometer/reduce_pixels.h"
 
 namespace lightwell::radiometer {
 namespace {
@@ -69,15 +68,25 @@ bool decode_bayer(const std::byte* top, const std::byte* bottom, const std::uint
   return clipped;
 }
 
-void reduce_pixels(const CellBatch& batch, const float* window, const CellScratch& scratch,
-                   const CellOutput& out) {
-  sum_pixel_cells(batch, window, scratch);
-  for (std::size_t i = 0; i < batch.cells; ++i) {
-    float radiance = scratch.sum[i] * batch.scale[i] - batch.toe[i];
-    radiance = (radiance > out.least ? radiance : out.least) * out.exposure;
-    const float peak = (scratch.peak[i] * batch.peak_scale[i] - batch.toe[i]) * out.exposure;
-    out.radiance[batch.slot[i]] = radiance;
-    out.peak[batch.slot[i]] = peak > radiance ? peak : radiance;
+void reduce_pixels(const CellBatch& batch, const float* window, const CellOutput& out) {
+  const std::uint16_t* start = batch.start;
+  for (std::size_t first = 0; first < batch.cells; first += 8) {
+    const std::uint32_t n = batch.classes[first / 8].segments;
+    for (std::size_t i = first; i < first + 8 && i < batch.cells; ++i) {
+      float sum = 0;
+      float top = 0;
+      for (std::uint32_t k = 0; k < n; ++k) {
+        const float value = window[start[8 * k + (i - first)]];
+        sum += value;
+        top = value > top ? value : top;
+      }
+      float radiance = sum * batch.scale[i] - batch.toe[i];
+      radiance = (radiance > out.least ? radiance : out.least) * out.exposure;
+      const float peak = (top * batch.peak_scale[i] - batch.toe[i]) * out.exposure;
+      out.radiance[batch.slot[i]] = radiance;
+      out.peak[batch.slot[i]] = peak > radiance ? peak : radiance;
+    }
+    start += 8 * static_cast<std::size_t>(n);
   }
 }
 
@@ -88,7 +97,7 @@ const Kernels kScalarKernels = {Isa::scalar,
                                 1,
                                 {decode<Storage::u8>, decode<Storage::u16>, decode<Storage::p12>},
                                 {decode_bayer<Storage::u8>, decode_bayer<Storage::u16>},
-                                reduce_pixels,
+                                nullptr,  // one lane: pixels alone
                                 reduce_pixels};
 
 }  // namespace lightwell::radiometer

@@ -5,8 +5,6 @@
 #if defined(__x86_64__) && defined(__SSE4_1__)
 #include <smmintrin.h>
 
-#include "lighting/radiometer/reduce_pixels.h"
-
 namespace lightwell::radiometer {
 namespace {
 
@@ -204,11 +202,29 @@ void reduce(const CellBatch& batch, const float* window, const CellScratch& scra
   }
 }
 
-void reduce_pixels(const CellBatch& batch, const float* window, const CellScratch& scratch,
-                   const CellOutput& out) {
-  sum_pixel_cells(batch, window, scratch);
-  for (std::size_t i = 0; i < batch.cells; i += 4)
-    finish(batch, i, _mm_load_ps(scratch.sum + i), _mm_load_ps(scratch.peak + i), out);
+__m128 four(const float* window, const std::uint16_t* start) {
+  return _mm_setr_ps(window[start[0]], window[start[1]], window[start[2]], window[start[3]]);
+}
+
+void reduce_pixels(const CellBatch& batch, const float* window, const CellOutput& out) {
+  const std::uint16_t* start = batch.start;
+  for (std::size_t i = 0; i < batch.cells; i += 8) {
+    const std::uint32_t n = batch.classes[i / 8].segments;
+    __m128 low = _mm_setzero_ps();
+    __m128 high = low;
+    __m128 low_top = low;
+    __m128 high_top = low;
+    for (std::uint32_t k = 0; k < n; ++k, start += 8) {
+      const __m128 a = four(window, start);
+      const __m128 b = four(window, start + 4);
+      low = _mm_add_ps(low, a);
+      high = _mm_add_ps(high, b);
+      low_top = _mm_max_ps(low_top, a);
+      high_top = _mm_max_ps(high_top, b);
+    }
+    finish(batch, i, low, low_top, out);
+    if (i + 4 < batch.cells) finish(batch, i + 4, high, high_top, out);
+  }
 }
 
 }  // namespace
