@@ -85,7 +85,10 @@ int run(const Arguments& a, const std::filesystem::path& bin) {
                                   std::to_string(a.rate), "--write-calibration", path("calibration")},
                             path("camera.log"));
   if (!camera.wait_for_line("ready")) return fail("camera: " + camera.stderr_text());
-  std::ofstream(path("config")) << "[http]\nlisten = \"127.0.0.1:0\"\n[dds]\ndomain = " << domain << "\n";
+  // With the renderer, as many lights as it has maps: none are clustered away.
+  const char* lights = a.renderer ? "[lights]\ncount = 72\nclusters = 0\n" : "";
+  std::ofstream(path("config")) << "[http]\nlisten = \"127.0.0.1:0\"\n[dds]\ndomain = " << domain << "\n"
+                                << lights;
   test::ChildProcess daemon(Words{(bin / "lightwelld").string(), "--config", path("config"), "--source",
                                   "aravis:" + address, "--calibration", path("calibration")},
                             path("daemon.log"));
