@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <variant>
+#include <vector>
 
 #include "lighting/result.h"
 
@@ -31,9 +32,50 @@ struct LinearResponse {
   [[nodiscard]] double dluminance_dcode(double) const { return 1 / gain; }
 };
 
+// Lin-log sensor: linear to the knee, logarithmic above it, value and slope continuous there:
+//   code = black + gain · L                        for L ≤ knee
+//   code = black + gain · knee · (1 + ln(L/knee))  above
+// gain, knee > 0.
+struct LinLogResponse {
+  double black = 0;
+  double gain = 1;
+  double knee_cd_m2 = 1;
+
+  [[nodiscard]] double code(double luminance_cd_m2) const {
+    const double x = luminance_cd_m2 <= knee_cd_m2
+                         ? luminance_cd_m2
+                         : knee_cd_m2 * (1 + std::log(luminance_cd_m2 / knee_cd_m2));
+    return black + gain * x;
+  }
+  [[nodiscard]] double luminance_cd_m2(double code) const {
+    const double x = (code - black) / gain;
+    return x <= knee_cd_m2 ? x : knee_cd_m2 * std::exp(x / knee_cd_m2 - 1);
+  }
+  [[nodiscard]] double dluminance_dcode(double code) const {
+    const double x = (code - black) / gain;
+    return (x <= knee_cd_m2 ? 1 : std::exp(x / knee_cd_m2 - 1)) / gain;
+  }
+};
+
+// Piecewise-linear companding (the knee points of IMX490 and AR0820 class sensors), and any measured table: straight
+// lines between the points, the first and the last line going on beyond them. At least two points, luminance and
+// code both strictly increasing. The derivative at a point is that of the line above it.
+struct PiecewiseLinearResponse {
+  struct Point {
+    double luminance_cd_m2 = 0;
+    double code = 0;
+    friend bool operator==(const Point&, const Point&) = default;
+  };
+  std::vector<Point> points;
+
+  [[nodiscard]] double code(double luminance_cd_m2) const;
+  [[nodiscard]] double luminance_cd_m2(double code) const;
+  [[nodiscard]] double dluminance_dcode(double code) const;
+};
+
 // The closed set of response models, with what every model shares.
 struct Response {
-  std::variant<LogResponse, LinearResponse> model;
+  std::variant<LogResponse, LinearResponse, LinLogResponse, PiecewiseLinearResponse> model;
   int bits = 12;            // codes are 0 … 2^bits − 1
   double black_code = 0;    // smallest usable code
   double clip_code = 4095;  // codes at and above are clipped
@@ -50,6 +92,9 @@ struct Response {
     return std::visit([&](const auto& m) { return m.dluminance_dcode(code); }, model);
   }
 };
+
+// The same sensor read out with another number of bits.
+Response with_bits(const Response& response, int bits);
 
 // Every field in range and the model increasing over the usable codes; the error names the field, value and range.
 Status check(const Response& response);

@@ -20,24 +20,6 @@ Lens default_lens(int width, int height) {
   return lens;
 }
 
-Response with_bits(const Response& response, int bits) {
-  Response out = response;
-  const double scale = std::ldexp(1.0, bits - response.bits);
-  if (auto* log = std::get_if<LogResponse>(&out.model)) {
-    log->a *= scale;
-    log->b *= scale;
-  } else if (auto* linear = std::get_if<LinearResponse>(&out.model)) {
-    linear->black *= scale;
-    linear->gain *= scale;
-  }
-  const double top = std::ldexp(1.0, bits) - 1;
-  const bool clips_at_top = response.clip_code >= std::ldexp(1.0, response.bits) - 1;
-  out.bits = bits;
-  out.black_code = std::floor(response.black_code * scale);
-  out.clip_code = clips_at_top ? top : std::floor(response.clip_code * scale);
-  return out;
-}
-
 Response default_response(double brightest_cd_m2, int bits) {
   constexpr double kDarkCode = 64,
                    kTopCode = 4000;  // of 4095: room for fixed pattern and noise on both sides

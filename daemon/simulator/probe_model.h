@@ -30,7 +30,4 @@ Response default_response(double brightest_cd_m2, int bits);
 // Fixed pattern of a few codes (columns, and pixels on top of them), and vignetting to 63 % at the horizon.
 FlatField default_flat_field(int width, int height, int bits, std::uint64_t seed);
 
-// The same sensor read out with another number of bits.
-Response with_bits(const Response& response, int bits);
-
 }  // namespace lightwell::simulator

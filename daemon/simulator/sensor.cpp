@@ -64,6 +64,17 @@ void encode_linear(const Row& r, const LinearResponse& m) {
   }
 }
 
+// The other models one pixel after the other, in double: exact rather than fast.
+template <class Model>
+void encode_any(const Row& r, const Model& m) {
+  for (std::size_t i = 0; i < r.count; ++i) {
+    const double light = static_cast<double>(r.plane[i] * (r.transmission[i] * r.gain));
+    const float code =
+        static_cast<float>(m.code(light)) + r.offset_scale * r.offset[i] + r.noise_scale * r.noise[i];
+    r.code[i] = rounded(code, r.top);
+  }
+}
+
 std::vector<float> standard_normal_values(std::uint64_t seed) {
   std::mt19937_64 random(seed ^ 0x6e6f697365);
   std::vector<double> values(kNoiseValues);
@@ -119,6 +130,10 @@ void Sensor::encode_row(std::size_t begin, std::size_t count, double exposure_us
     encode_log(row, *log);
   else if (const auto* linear = std::get_if<LinearResponse>(&response_.model))
     encode_linear(row, *linear);
+  else if (const auto* lin_log = std::get_if<LinLogResponse>(&response_.model))
+    encode_any(row, *lin_log);
+  else if (const auto* companded = std::get_if<PiecewiseLinearResponse>(&response_.model))
+    encode_any(row, *companded);
 }
 
 void Sensor::encode(std::span<const float> plane, double exposure_us, std::uint64_t frame_index,

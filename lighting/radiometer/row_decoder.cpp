@@ -58,8 +58,16 @@ RowDecoder::RowDecoder(const Calibration& calibration, const FrameFormat& format
   for (auto& row : row_) row.assign(2 * (2 * stride_ + 16), std::byte{0});
   log_ = fold_log_response(response, weights);
   if (log_) return;
-  table_ = response_table(response);
   weight_ = weights.weight_sr;
+  if (!std::holds_alternative<LogResponse>(response.model) &&
+      !std::holds_alternative<LinearResponse>(response.model)) {
+    offset_ = weights.offset_codes;
+    const auto [least, most] = std::minmax_element(offset_.begin(), offset_.end());
+    if (least != offset_.end())
+      fine_ = FineTable(response, -static_cast<double>(*most), clip_ - static_cast<double>(*least));
+    return;
+  }
+  table_ = response_table(response);
   dark_.assign(weight_.size(), 0);
   for (std::size_t i = 0; i < weight_.size(); ++i) {
     const auto offset = static_cast<double>(weights.offset_codes[i]);
@@ -71,7 +79,9 @@ RowDecoder::RowDecoder(const Calibration& calibration, const FrameFormat& format
 }
 
 float RowDecoder::look_up(std::uint32_t code, std::size_t at) const noexcept {
-  return (table_[std::min(code, clip_)] - dark_[at]) * weight_[at];
+  const std::uint32_t inside = std::min(code, clip_);
+  if (fine_) return fine_->radiance(static_cast<float>(inside) - offset_[at]) * weight_[at];
+  return (table_[inside] - dark_[at]) * weight_[at];
 }
 
 // count pixels from `first` on, as bytes that may be read in whole.

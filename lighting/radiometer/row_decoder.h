@@ -12,6 +12,7 @@
 #include "lighting/frame_format.h"
 #include "lighting/radiometer/aligned.h"
 #include "lighting/radiometer/cells.h"
+#include "lighting/radiometer/fine_table.h"
 #include "lighting/radiometer/kernel.h"
 #include "lighting/radiometer/log_tables.h"
 #include "lighting/radiometer/sample_weights.h"
@@ -55,8 +56,11 @@ class RowDecoder {
   std::uint32_t clip_;
   double toe_ = 0;
   std::optional<LogTables> log_;
-  // (table[code] − dark) · weight
+  // Logarithmic and linear: (table[code] − dark) · weight
   std::vector<float> table_, dark_, weight_;
+  // The other models: radiance at (code − offset) · weight
+  std::optional<FineTable> fine_;
+  std::vector<float> offset_;
   AlignedVector<std::byte> row_[2];  // copies of rows whose blocks would reach past the frame or the mosaic
 };
 

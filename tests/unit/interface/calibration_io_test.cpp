@@ -93,6 +93,47 @@ TEST(CalibrationIo, LinearResponseAndNoFixedPatternSurvive) {
   EXPECT_EQ(read->id, calibration_id(c));
 }
 
+TEST(CalibrationIo, LinLogAndPiecewiseLinearResponsesSurviveEveryTrip) {
+  const PiecewiseLinearResponse companded{{{0, 60.3}, {12.25, 1084.6}, {95.1, 2108}, {24000, 4000.7}}};
+  const LinLogResponse lin_log{64.5, 30.1, 20.7};
+  for (const bool piecewise : {true, false}) {
+    Calibration c = example();
+    if (piecewise)
+      c.response.model = companded;
+    else
+      c.response.model = lin_log;
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_calibration(folder.path(), c));
+    for (const auto& read :
+         {calibration_from_json(calibration_to_json(c), "x"), read_calibration(folder.path())}) {
+      ASSERT_TRUE(read) << read.error().message;
+      if (piecewise) {
+        EXPECT_EQ(std::get<PiecewiseLinearResponse>(read->response.model).points, companded.points);
+      } else {
+        const auto& m = std::get<LinLogResponse>(read->response.model);
+        EXPECT_EQ(m.black, lin_log.black);
+        EXPECT_EQ(m.gain, lin_log.gain);
+        EXPECT_EQ(m.knee_cd_m2, lin_log.knee_cd_m2);
+      }
+      EXPECT_EQ(read->id, calibration_id(c));
+    }
+  }
+}
+
+// As written before there were more than two models: same content, same id, for ever.
+TEST(CalibrationIo, OldFilesAreReadAndKeepTheirId) {
+  const std::string old =
+      R"({"schema":"lightwell.calibration/1","id":"","response":{"schema":"lightwell.response/1","model":"log",)"
+      R"("parameters":{"a":64.125,"b":208.3,"c":0.1},"bits":12,"black_code":64,"clip_code":4090,)"
+      R"("reference_exposure_us":10000},"lens":{"schema":"lightwell.lens/1","model":"kannala-brandt",)"
+      R"("image_size":[3,2],"focal":[1.5,1.5],"center":[1,0.5],"k":[0,0,0,0],"max_theta_deg":90},)"
+      R"("flat":{"schema":"lightwell.flat/1","image_size":[0,0],"vignetting":[0,0,0]}})";
+  const auto read = calibration_from_json(old, "old");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(std::get<LogResponse>(read->response.model).b, 208.3);
+  EXPECT_EQ(read->id, "9089c8543b5f51f7");
+}
+
 TEST(CalibrationIo, IdTellsAnyChangeOfContent) {
   const std::string id = calibration_id(example());
   EXPECT_EQ(id.size(), 16u);
@@ -156,6 +197,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Wrong{"response.json", "/schema", "\"lightwell.response/2\"", "schema"},
                     Wrong{"response.json", "/model", "\"cubic\"", "model"},
                     Wrong{"response.json", "/parameters", "[1,2]", "parameters"},
+                    Wrong{"response.json", "/model", "\"linlog\"", "parameters.black"},
+                    Wrong{"response.json", "/model", "\"pwl\"", "parameters.code"},
                     Wrong{"response.json", "/parameters/b", "-1", "b = -1"},
                     Wrong{"response.json", "/parameters/a", "\"x\"", "parameters.a"},
                     Wrong{"response.json", "/bits", "12.5", "bits"},
@@ -180,6 +223,25 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"flat.json", "/offset_codes/encoding", "\"raw\"", "encoding"},
                     Wrong{"flat.json", "/offset_codes/scale", "0", "scale"},
                     Wrong{"flat.json", "/offset_codes/data", "\"!!!!\"", "data"}));
+
+TEST(CalibrationIo, PiecewiseLinearPointsThatDoNotIncreaseOrPairAreBadInput) {
+  Calibration c = example();
+  c.response.model = PiecewiseLinearResponse{{{0, 60}, {12, 1000}, {24000, 4000}}};
+  const nlohmann::json good = nlohmann::json::parse(calibration_to_json(c));
+  const auto refused = [&](const char* pointer, const char* value, const char* named) {
+    nlohmann::json bad = good;
+    bad[nlohmann::json::json_pointer(std::string("/response/parameters/") + pointer)] =
+        nlohmann::json::parse(value);
+    const auto read = calibration_from_json(bad.dump(), "take.mkv");
+    ASSERT_FALSE(read) << pointer;
+    EXPECT_EQ(read.error().kind, ErrorKind::bad_input);
+    EXPECT_NE(read.error().message.find(named), std::string::npos) << read.error().message;
+  };
+  refused("code/1", "5000", "response.code[2]");
+  refused("luminance_cd_m2/1", "0", "response.luminance_cd_m2[1]");
+  refused("code", "[60, 1000]", "luminance_cd_m2 has 3 values, code has 2");
+  refused("code/0", "null", "code[0]");
+}
 
 TEST(CalibrationIo, MissingFolderAndTruncatedFileAreBadInputButNoFlatIsFine) {
   EXPECT_EQ(read_calibration("/nonexistent").error().kind, ErrorKind::bad_input);

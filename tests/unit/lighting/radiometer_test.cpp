@@ -154,6 +154,40 @@ TEST(Radiometer, LinearResponseAgreesWithDouble) {
   }
 }
 
+TEST(Radiometer, LinLogAndCompandedResponsesAgreeWithDouble) {
+  struct Case {
+    Response response;
+    double dark_cd_m2;  // light of 0.02 codes in the first line, where codes near black cancel
+  };
+  const Case cases[] = {
+      {{LinLogResponse{64, 30, 20}, 12, 64, 4000, 10000}, 0.02 / 30},
+      // Linear for a hundred codes, then 16 decades.
+      {{LinLogResponse{64, 200, 0.5}, 12, 64, 4000, 10000}, 0.02 / 200},
+      {{PiecewiseLinearResponse{{{0, 60.3}, {12, 1084.6}, {95, 2108}, {1500, 3132.5}, {24000, 4000.7}}}, 12,
+        64, 4000, 10000},
+       0.02 * 12 / 1024.3}};
+  for (const auto& [response, dark] : cases)
+    for (const PixelFormat pixel_format : {PixelFormat::mono12p, PixelFormat::bayer_rg12}) {
+      const FrameFormat format{163, 151, pixel_format};
+      Calibration c = log_camera(163, 151, 12);
+      c.response = response;
+      const auto codes = random_codes(c, format);
+      const ReferenceMap reference = ReferenceRadiometer(c, format, {}).develop(codes, 10000);
+      expect_equals_reference(develop(c, format, codes), reference, dark);
+    }
+}
+
+TEST(Radiometer, CompandedResponseWithoutFixedPatternAgreesWithDouble) {
+  const FrameFormat format{163, 151, PixelFormat::mono12};
+  Calibration c = log_camera(163, 151, 12);
+  c.flat.offset_codes.clear();
+  c.response = {PiecewiseLinearResponse{{{0, 64}, {12, 1084}, {95, 2108}, {24000, 4000}}}, 12, 64, 4000,
+                10000};
+  const auto codes = random_codes(c, format);
+  const ReferenceMap reference = ReferenceRadiometer(c, format, {}).develop(codes, 10000);
+  expect_equals_reference(develop(c, format, codes), reference, 0.02 * 12 / 1020);
+}
+
 TEST(Radiometer, LogarithmicResponseBeyondTheIntegersAgreesWithDouble) {
   const FrameFormat format{163, 151, PixelFormat::mono12};
   Calibration c = log_camera(163, 151, 12);
