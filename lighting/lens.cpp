@@ -120,6 +120,40 @@ Vec2d Lens::project(const Vec3d& direction) const {
   return center + focal.cwiseProduct(distance * unit);
 }
 
+LensJacobian project_with_jacobian(const Lens& lens, const Vec3d& direction) {
+  LensJacobian j{lens.project(direction), Eigen::Matrix<double, 2, 8>::Zero(),
+                 Eigen::Matrix<double, 2, 3>::Zero()};
+  j.dpixel_dlens(0, 2) = j.dpixel_dlens(1, 3) = 1;
+  const double z = direction.z();
+  const double h = direction.head<2>().norm();
+  if (h <= 1e-9 * std::abs(z)) {  // on the axis, where θd / h is 1 / z
+    if (z <= 0) return j;
+    j.dpixel_ddirection(0, 0) = lens.focal.x() / z;
+    j.dpixel_ddirection(1, 1) = lens.focal.y() / z;
+    return j;
+  }
+  const double theta = std::atan2(h, z);
+  const double distance = theta_d(lens.k, theta);
+  const double slope = theta_d_slope(lens.k, theta);
+  const Vec2d unit = direction.head<2>() / h;
+  double power = theta;
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    power *= theta * theta;
+    j.dpixel_dlens.col(4 + i) = power * lens.focal.cwiseProduct(unit);
+  }
+  j.dpixel_dlens(0, 0) = distance * unit.x();
+  j.dpixel_dlens(1, 1) = distance * unit.y();
+  // Along the radius θ changes by z / |d|² a unit of h and by −h / |d|² a unit of z; across it the
+  // distance stays and the azimuth turns.
+  const double n2 = h * h + z * z;
+  const Eigen::Matrix2d along = unit * unit.transpose();
+  const Eigen::Matrix2d across = Eigen::Matrix2d::Identity() - along;
+  j.dpixel_ddirection.leftCols<2>() =
+      lens.focal.asDiagonal() * (slope * z / n2 * along + distance / h * across);
+  j.dpixel_ddirection.col(2) = -slope * h / n2 * lens.focal.cwiseProduct(unit);
+  return j;
+}
+
 Vec3d Lens::unproject(const Vec2d& pixel) const {
   const Vec2d m = normalised(*this, pixel);
   const double distance = m.norm();

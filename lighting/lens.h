@@ -34,6 +34,14 @@ struct Lens {
   [[nodiscard]] double pixel_solid_angle_sr(const Vec2d& pixel) const;
 };
 
+// How a projection moves with the lens and with the direction: what calibration is made of.
+struct LensJacobian {
+  Vec2d pixel;
+  Eigen::Matrix<double, 2, 8> dpixel_dlens;       // by fx, fy, cx, cy, k1 … k4
+  Eigen::Matrix<double, 2, 3> dpixel_ddirection;  // by the direction, of any length; 0 straight behind
+};
+LensJacobian project_with_jacobian(const Lens& lens, const Vec3d& direction);
+
 inline Vec3d world_from_camera(const Vec3d& d) {
   return {d.x(), d.z(), -d.y()};
 }

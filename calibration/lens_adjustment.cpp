@@ -1,0 +1,259 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/lens_adjustment.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace lightwell {
+namespace {
+
+// The solver's numbers: fx, fy / fx, cx, cy, k1 … k4.
+using LensNumbers = std::array<double, 8>;
+using PoseNumbers = std::array<double, 6>;  // angle-axis, translation
+
+LensNumbers numbers_of(const Lens& lens, const LensFreedom& freedom) {
+  LensNumbers n = {lens.focal.x(), freedom.aspect ? lens.focal.y() / lens.focal.x() : 1, lens.center.x(),
+                   lens.center.y()};
+  for (std::size_t i = 0; i < 4; ++i) n[4 + i] = static_cast<int>(i) < freedom.coefficients ? lens.k[i] : 0;
+  return n;
+}
+
+void set_numbers(Lens& lens, const double* n) {
+  lens.focal = {n[0], n[0] * n[1]};
+  lens.center = {n[2], n[3]};
+  std::copy(n + 4, n + 8, lens.k.begin());
+}
+
+// dfocal_dnumbers: fy = fx · aspect, all else is itself.
+Eigen::Matrix<double, 8, 8> dlens_dnumbers(const Lens& lens) {
+  Eigen::Matrix<double, 8, 8> j = Eigen::Matrix<double, 8, 8>::Identity();
+  j(1, 0) = lens.focal.y() / lens.focal.x();
+  j(1, 1) = lens.focal.x();
+  return j;
+}
+
+Eigen::Matrix3d cross_matrix(const Vec3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+// d(R(ω) p) = −[R p]× · left_jacobian(ω) · dω (Barfoot, State Estimation for Robotics, equation 7.77).
+Eigen::Matrix3d left_jacobian(const Vec3d& rotation) {
+  const double angle2 = rotation.squaredNorm();
+  const Eigen::Matrix3d w = cross_matrix(rotation);
+  if (angle2 < 1e-8) return Eigen::Matrix3d::Identity() + w / 2 + w * w / 6;
+  const double angle = std::sqrt(angle2);
+  return Eigen::Matrix3d::Identity() + (1 - std::cos(angle)) / angle2 * w +
+         (angle - std::sin(angle)) / (angle2 * angle) * w * w;
+}
+
+// The parts of a view that all its points share, made once an evaluation.
+class ViewFrame : public ceres::EvaluationCallback {
+ public:
+  ViewFrame(const Lens& lens, const LensNumbers& lens_numbers, const std::vector<PoseNumbers>& poses)
+      : lens_(lens),
+        lens_numbers_(lens_numbers),
+        poses_(poses),
+        rotations_(poses.size()),
+        jacobians_(poses.size()) {}
+
+  void PrepareForEvaluation(bool, bool) override {
+    set_numbers(lens_, lens_numbers_.data());
+    dlens_dnumbers_ = dlens_dnumbers(lens_);
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      const Vec3d rotation(poses_[i].data());
+      rotations_[i] = TargetPose{rotation, Vec3d::Zero()}.camera_from_target();
+      jacobians_[i] = left_jacobian(rotation);
+    }
+  }
+  [[nodiscard]] const Lens& lens() const { return lens_; }
+  [[nodiscard]] const Eigen::Matrix<double, 8, 8>& by_numbers() const { return dlens_dnumbers_; }
+  [[nodiscard]] const Eigen::Matrix3d& rotation(std::size_t view) const { return rotations_[view]; }
+  [[nodiscard]] const Eigen::Matrix3d& jacobian(std::size_t view) const { return jacobians_[view]; }
+
+ private:
+  Lens lens_;
+  const LensNumbers& lens_numbers_;
+  const std::vector<PoseNumbers>& poses_;
+  Eigen::Matrix<double, 8, 8> dlens_dnumbers_;
+  std::vector<Eigen::Matrix3d> rotations_;
+  std::vector<Eigen::Matrix3d> jacobians_;
+};
+
+// Projection less pixel of one point.
+class PointCost : public ceres::SizedCostFunction<2, 8, 6> {
+ public:
+  PointCost(const ViewFrame& frame, std::size_t view, const Correspondence& point)
+      : frame_(frame), view_(view), point_(point) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const Vec3d turned = frame_.rotation(view_) * point_.target_mm;
+    const Vec3d direction = turned + Vec3d(parameters[1] + 3);
+    if (!jacobians) {
+      Eigen::Map<Vec2d>{residuals} = frame_.lens().project(direction) - point_.pixel;
+      return true;
+    }
+    const LensJacobian j = project_with_jacobian(frame_.lens(), direction);
+    Eigen::Map<Vec2d>{residuals} = j.pixel - point_.pixel;
+    if (jacobians[0])
+      Eigen::Map<Eigen::Matrix<double, 2, 8, Eigen::RowMajor>>{jacobians[0]} =
+          j.dpixel_dlens * frame_.by_numbers();
+    if (jacobians[1])
+      Eigen::Map<Eigen::Matrix<double, 2, 6, Eigen::RowMajor>>{jacobians[1]}
+          << -j.dpixel_ddirection * cross_matrix(turned) * frame_.jacobian(view_),
+          j.dpixel_ddirection;
+    return true;
+  }
+
+ private:
+  const ViewFrame& frame_;
+  std::size_t view_;
+  const Correspondence& point_;
+};
+
+// A wall where θd stops growing: nothing above the least slope, steep below it. At one angle.
+class SlopeCost : public ceres::SizedCostFunction<1, 8> {
+ public:
+  explicit SlopeCost(double theta) : theta_(theta) {}
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    constexpr double kLeastSlope = 0.02;  // a fiftieth of the centre's: well above what check(Lens) refuses
+    constexpr double kSteepness = 1e4;    // pixels a unit of slope: heavier than all points together
+    double slope = 1, power = 1;
+    std::array<double, 4> by_k{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      power *= theta_ * theta_;
+      by_k[i] = static_cast<double>(2 * i + 3) * power;
+      slope += by_k[i] * parameters[0][4 + i];
+    }
+    const bool below = slope < kLeastSlope;
+    residuals[0] = below ? kSteepness * (kLeastSlope - slope) : 0;
+    if (jacobians && jacobians[0])
+      for (std::size_t i = 0; i < 8; ++i) jacobians[0][i] = below && i >= 4 ? -kSteepness * by_k[i - 4] : 0;
+    return true;
+  }
+
+ private:
+  double theta_;
+};
+
+std::vector<int> held(const LensFreedom& freedom) {
+  std::vector<int> out;
+  if (!freedom.aspect) out.push_back(1);
+  if (!freedom.center) out.insert(out.end(), {2, 3});
+  for (int i = freedom.coefficients; i < 4; ++i) out.push_back(4 + i);
+  return out;
+}
+
+double squared_error(const Lens& lens, const std::vector<PosedView>& views) {
+  double sum = 0;
+  for (const PosedView& view : views)
+    for (const double e : errors_px(lens, view.pose, view.points)) sum += e * e;
+  return sum;
+}
+
+}  // namespace
+
+double largest_theta_rad(const std::vector<PosedView>& views) {
+  double largest = 0;
+  for (const PosedView& view : views) {
+    const Eigen::Matrix3d rotation = view.pose.camera_from_target();
+    for (const auto& p : view.points) {
+      const Vec3d d = rotation * p.target_mm + view.pose.translation_mm;
+      largest = std::max(largest, std::atan2(d.head<2>().norm(), d.z()));
+    }
+  }
+  return largest;
+}
+
+double adjust(Lens& lens, std::vector<PosedView>& views, const AdjustmentOptions& options) {
+  LensNumbers numbers = numbers_of(lens, options.freedom);
+  std::vector<PoseNumbers> poses;
+  for (const PosedView& view : views) {
+    PoseNumbers pose{};
+    Eigen::Map<Vec3d>{pose.data()} = view.pose.rotation;
+    Eigen::Map<Vec3d>{pose.data() + 3} = view.pose.translation_mm;
+    poses.push_back(pose);
+  }
+  ViewFrame frame(lens, numbers, poses);
+  ceres::Problem::Options ownership;
+  ownership.evaluation_callback = &frame;
+  ceres::Problem problem(ownership);
+  const auto loss = [&]() -> ceres::LossFunction* {
+    return std::isinf(options.cauchy_px) ? nullptr : new ceres::CauchyLoss(options.cauchy_px);
+  };
+  problem.AddParameterBlock(numbers.data(), 8);
+  if (const std::vector<int> constant = held(options.freedom); !constant.empty())
+    problem.SetManifold(numbers.data(), new ceres::SubsetManifold(8, constant));
+  problem.SetParameterLowerBound(numbers.data(), 0, 1e-3);
+  for (std::size_t i = 0; i < views.size(); ++i)
+    for (const auto& point : views[i].points)
+      problem.AddResidualBlock(new PointCost(frame, i, point), loss(), numbers.data(), poses[i].data());
+  const double field = largest_theta_rad(views);
+  constexpr int kWalls = 48;
+  for (int i = 1; i <= kWalls && options.freedom.coefficients > 0; ++i)
+    problem.AddResidualBlock(new SlopeCost(field * i / kWalls), nullptr, numbers.data());
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_SCHUR;
+  solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  for (PoseNumbers& pose : poses) solver.linear_solver_ordering->AddElementToGroup(pose.data(), 0);
+  solver.linear_solver_ordering->AddElementToGroup(numbers.data(), 1);
+  solver.max_num_iterations = options.iterations;
+  solver.function_tolerance = 1e-10;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  if (!summary.IsSolutionUsable()) return std::numeric_limits<double>::quiet_NaN();
+  set_numbers(lens, numbers.data());
+  for (std::size_t i = 0; i < views.size(); ++i)
+    views[i].pose = {Vec3d(poses[i].data()), Vec3d(poses[i].data() + 3)};
+  return squared_error(lens, views);
+}
+
+std::optional<Eigen::Matrix<double, 8, 8>> lens_covariance(const Lens& lens,
+                                                           const std::vector<PosedView>& views,
+                                                           const LensFreedom& freedom, double noise_px) {
+  using Matrix8 = Eigen::Matrix<double, 8, 8>;
+  const Matrix8 by_numbers = dlens_dnumbers(lens);
+  Matrix8 information = Matrix8::Zero();
+  for (const PosedView& view : views) {
+    const Eigen::Matrix3d rotation = view.pose.camera_from_target();
+    Matrix8 own = Matrix8::Zero();
+    Eigen::Matrix<double, 6, 6> pose = Eigen::Matrix<double, 6, 6>::Zero();
+    Eigen::Matrix<double, 8, 6> mixed = Eigen::Matrix<double, 8, 6>::Zero();
+    for (const auto& p : view.points) {
+      const Vec3d turned = rotation * p.target_mm;
+      const LensJacobian j = project_with_jacobian(lens, turned + view.pose.translation_mm);
+      const Eigen::Matrix<double, 2, 8> by_lens = j.dpixel_dlens * by_numbers;
+      Eigen::Matrix<double, 2, 6> by_pose;
+      by_pose << -j.dpixel_ddirection * cross_matrix(turned), j.dpixel_ddirection;
+      own += by_lens.transpose() * by_lens;
+      pose += by_pose.transpose() * by_pose;
+      mixed += by_lens.transpose() * by_pose;
+    }
+    // What the view says of the lens once its pose is free (Schur complement).
+    information += own - mixed * pose.ldlt().solve(mixed.transpose());
+  }
+  std::vector<int> free;
+  const std::vector<int> constant = held(freedom);
+  for (int i = 0; i < 8; ++i)
+    if (std::find(constant.begin(), constant.end(), i) == constant.end()) free.push_back(i);
+  Eigen::MatrixXd reduced = information(free, free);
+  // To a unit diagonal first: pixels and eighth powers of the angle differ by many decades.
+  const Eigen::VectorXd scale = reduced.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  reduced = (scale.asDiagonal() * reduced * scale.asDiagonal()).eval();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(reduced);
+  if (!reduced.allFinite() || eigen.eigenvalues()[0] < 1e-13) return {};
+  const Eigen::MatrixXd inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
+                                  eigen.eigenvectors().transpose();
+  Matrix8 covariance = Matrix8::Zero();
+  covariance(free, free) = noise_px * noise_px * (scale.asDiagonal() * inverse * scale.asDiagonal());
+  return Matrix8(by_numbers * covariance * by_numbers.transpose());
+}
+
+}  // namespace lightwell

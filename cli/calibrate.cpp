@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/command.h"
+
+namespace lightwell::cli {
+
+// `lightwell calibrate …`: one file a subcommand, in the order in which --help lists them.
+
+Command add_calibrate(CLI::App& app) {
+  CLI::App* group = app.add_subcommand("calibrate", "Calibrate a camera's lens and response");
+  group->require_subcommand(1);
+  const std::vector<Command> commands = {};
+  return {group, [commands] {
+            for (const Command& command : commands)
+              if (command.app->parsed()) return command.run();
+            return static_cast<int>(ErrorKind::usage);
+          }};
+}
+
+}  // namespace lightwell::cli
