@@ -19,6 +19,10 @@ double turns_between(double from, double to) {
   return d - std::round(d);
 }
 
+void add_to(double* __restrict sums, const double* __restrict values, std::size_t count) noexcept {
+  for (std::size_t i = 0; i < count; ++i) sums[i] += values[i];
+}
+
 }  // namespace
 
 // Σ energy · ((1 + cos Δλ)/2)² / Σ energy = ⅜ + ½ Re(e^{−iλ} m1) + ⅛ Re(e^{−2iλ} m2), m the circular moments:
@@ -65,9 +69,10 @@ void AzimuthSeam::fix(const RingDistribution& map, double turns) noexcept {
 
 AzimuthSeam::NearEnergy AzimuthSeam::near_energy(const RingDistribution& map) noexcept {
   std::fill(column_start_.begin(), column_start_.end(), 0.0);
+  const std::size_t blocks = column_start_.size() - 1;
   for (int ring = 0; ring < map.grid().rings; ++ring)
-    for (std::size_t b = 0; b < column_start_.size(); ++b)
-      column_start_[b] += map.block_start(ring, static_cast<int>(b));
+    add_to(column_start_.data(), map.block_starts(ring), blocks);
+  column_start_[blocks] = map.total_power();
   NearEnergy near{};
   for (std::size_t b = 0; b < block_azimuth_.size(); ++b) {
     const std::complex<double> e = block_azimuth_[b];
@@ -147,8 +152,12 @@ void AzimuthSeam::jump(const RingDistribution& map, double turns) noexcept {
 }
 
 void AzimuthSeam::update_seam_power(const RingDistribution& map) noexcept {
-  for (int ring = 0; ring < map.grid().rings; ++ring)
-    seam_power_[static_cast<std::size_t>(ring)] = map.power_before(ring, turns_);
+  map.powers_before(turns_, seam_power_);
+}
+
+double AzimuthSeam::power_target(const RingDistribution& map, const RingBlend& blend,
+                                 double s) const noexcept {
+  return light_kernel::kernels().target(map.tables(), tables(), blend, s);
 }
 
 double AzimuthSeam::place(const RingDistribution& map, const RingBlend& blend,

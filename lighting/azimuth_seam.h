@@ -40,13 +40,13 @@ class AzimuthSeam {
   // s at the seam, in [0, 1).
   [[nodiscard]] double offset() const { return offset_; }
 
+  // For the kernels that locate lights.
+  [[nodiscard]] light_kernel::Seam tables() const noexcept {
+    return {offset_, turns_ * sectors_, seam_power_.data()};
+  }
   // The light's place s to the ring blend's cumulative power from λ = 0, and back.
   [[nodiscard]] double power_target(const RingDistribution& map, const RingBlend& blend,
-                                    double s) const noexcept {
-    const double power = map.power(blend);
-    const double target = seam_power(blend) + (s < offset_ ? s - offset_ + 1 : s - offset_) * power;
-    return target >= power ? target - power : target;
-  }
+                                    double s) const noexcept;
   [[nodiscard]] double place(const RingDistribution& map, const RingBlend& blend,
                              double power_before) const noexcept;
 

@@ -40,7 +40,10 @@ class LightFilter {
 
  private:
   void filter_directions(LightArrays& out) noexcept;
-  void filter_power(int channel, std::vector<float>& out) noexcept;
+  void filter_power(std::size_t channel, std::vector<float>& out) noexcept;
+  using Channel = std::vector<float> LightArrays::*;
+  // within_range: each light held to the least and the largest of its window
+  void filter_channel(Channel channel, bool within_range, std::vector<float>& out) noexcept;
   [[nodiscard]] const LightArrays& frame(std::size_t age) const {
     return history_[(newest_ + history_.size() - age) % history_.size()];
   }
@@ -53,7 +56,7 @@ class LightFilter {
   std::vector<LightArrays> history_;             // ring of the last frames, one a tap
   std::vector<std::array<double, 3>> totals_;    // of those frames, per channel
   std::vector<float> last_x_, last_y_, last_z_;  // what came out before
-  std::vector<float> least_, largest_;
+  std::vector<const float*> past_;               // scratch: a channel's frames, newest first
 };
 
 }  // namespace lightwell

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -24,38 +23,40 @@
 // A sampler is a light view: the distribution and the seam must outlive it. Thread-safe, allocates nothing.
 namespace lightwell {
 
-struct RingCoordinates {
-  double t = 0;  // share of the map's power inside of this place's ring position, [0, 1]
-  double s = 0;  // place on the circle, [0, 1)
-};
+// t: share of the map's power inside of this place's ring position, [0, 1]; s: place on the circle, [0, 1).
+using RingCoordinates = light_kernel::Point;
 
-// A point of the map that a sampler chose.
-struct MapPlace {
-  RingPlace ring;
-  SectorPlace sector;
-  RingBlend blend;
-};
-
-using MapPlaces = std::array<MapPlace, RingDistribution::kTogether>;
-
-// Row, then column. source: Pharr and Humphreys 2004; Havran et al. 2005, section 3.1
-class StandardInversion {
+// What both methods share; Method has warp and unwarp (square to coordinates and back) and blending().
+template <class Method>
+class RingSampler {
  public:
-  StandardInversion(const RingDistribution& map, const AzimuthSeam& seam) : map_(&map), seam_(&seam) {}
+  RingSampler(const RingDistribution& map, const AzimuthSeam& seam) : map_(&map), seam_(&seam) {}
 
-  static RingCoordinates warp(const Vec2d& square) { return {square.x(), square.y()}; }
-  [[nodiscard]] MapPlace locate(const RingCoordinates& c) const noexcept;
-  void locate(const RingCoordinates* c, MapPlaces& places) const noexcept;  // kTogether of them
+  // The places of points, one each.
+  void locate(std::span<const RingCoordinates> points, std::span<MapPlace> places) const noexcept;
   [[nodiscard]] Vec3d sample(const Vec2d& square) const noexcept;
   [[nodiscard]] double pdf(const Vec3d& direction) const noexcept;
   [[nodiscard]] Vec2d invert(const Vec3d& direction) const noexcept;
   [[nodiscard]] const RingDistribution& map() const { return *map_; }
 
  private:
-  [[nodiscard]] RingBlend blend_at(const RingPlace& place) const noexcept;
+  [[nodiscard]] light_kernel::Blending blending() const {
+    return static_cast<const Method&>(*this).blending();
+  }
+  [[nodiscard]] RingBlend blend_at(const RingPlace& ring) const noexcept;
 
   const RingDistribution* map_;
   const AzimuthSeam* seam_;
+};
+
+// Row, then column. source: Pharr and Humphreys 2004; Havran et al. 2005, section 3.1
+class StandardInversion : public RingSampler<StandardInversion> {
+ public:
+  using RingSampler::RingSampler;
+
+  static RingCoordinates warp(const Vec2d& square) { return {square.x(), square.y()}; }
+  static Vec2d unwarp(const RingCoordinates& c) { return {c.t, c.s}; }
+  [[nodiscard]] static light_kernel::Blending blending() { return light_kernel::Blending::own; }
 };
 
 // Concentric map of the square to the disc; t = r² to the rings, the disc's angle to azimuth; the azimuth's
@@ -66,30 +67,25 @@ class StandardInversion {
 // sun's: with one bright bin a quarter of the lights lands in the dark, and a residual error stays at any
 // count. Weighted by ring power (by_power, the default) the interpolation is that of radiance itself, and a
 // black neighbour has no weight.
-class HavranTransform {
+class HavranTransform : public RingSampler<HavranTransform> {
  public:
   enum class Interpolation { by_power, printed };
 
   HavranTransform(const RingDistribution& map, const AzimuthSeam& seam,
                   Interpolation interpolation = Interpolation::by_power)
-      : map_(&map), seam_(&seam), interpolation_(interpolation) {}
+      : RingSampler(map, seam), interpolation_(interpolation) {}
 
   static RingCoordinates warp(const Vec2d& square) {
     const DiscPoint p = disc_from_square(square);
     return {p.radius2, p.turns < 1 ? p.turns : 0};
   }
-  [[nodiscard]] MapPlace locate(const RingCoordinates& c) const noexcept;
-  void locate(const RingCoordinates* c, MapPlaces& places) const noexcept;  // kTogether of them
-  [[nodiscard]] Vec3d sample(const Vec2d& square) const noexcept;
-  [[nodiscard]] double pdf(const Vec3d& direction) const noexcept;
-  [[nodiscard]] Vec2d invert(const Vec3d& direction) const noexcept;
-  [[nodiscard]] const RingDistribution& map() const { return *map_; }
+  static Vec2d unwarp(const RingCoordinates& c) { return square_from_disc({c.t, c.s}); }
+  [[nodiscard]] light_kernel::Blending blending() const {
+    return interpolation_ == Interpolation::by_power ? light_kernel::Blending::by_power
+                                                     : light_kernel::Blending::printed;
+  }
 
  private:
-  [[nodiscard]] RingBlend blend_at(const RingPlace& place) const noexcept;
-
-  const RingDistribution* map_;
-  const AzimuthSeam* seam_;
   Interpolation interpolation_;
 };
 

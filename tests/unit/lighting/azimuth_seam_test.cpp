@@ -133,13 +133,15 @@ TEST(AzimuthSeam, JumpLeavesTheLightsOfMostOfTheEnergyWhereTheyAre) {
   seam.follow(e);
   ASSERT_GT(turns_apart(seam.turns(), before), 30.0 / 360) << "the seam had reason to jump";
   // The mapping of the old lamps' ring, before and after the jump, at the same map.
-  const RingBlend ring{60, 60, 1, 0, 0};
+  const double t = (e.ring_start(60) + 0.5 * e.ring_power(60)) / e.total_power();
   int moved = 0;
   for (int i = 0; i < 1000; ++i) {
-    const double s = (i + 0.5) / 1000;
-    const auto now = e.sector_at(ring, seam.power_target(e, ring, s)).sector;
-    const auto then = e.sector_at(ring, unmoved.power_target(e, ring, s)).sector;
-    moved += now != then ? 1 : 0;
+    const RingCoordinates point = {t, (i + 0.5) / 1000};
+    MapPlace now, then;
+    StandardInversion(e, seam).locate({&point, 1}, {&now, 1});
+    StandardInversion(e, unmoved).locate({&point, 1}, {&then, 1});
+    ASSERT_EQ(now.ring.ring, 60);
+    moved += now.sector.sector != then.sector.sector ? 1 : 0;
   }
   EXPECT_LT(moved, 20) << "of 1000 lights of the lamps that were there before";
 }
