@@ -114,10 +114,6 @@ Result<Lens> read_lens(const std::filesystem::path& file) {
       [](const Lens& lens) { return check(lens); });
 }
 
-std::string lens_to_json(const Lens& lens) {
-  return json_from(lens).dump();
-}
-
 Result<FlatField> read_flat_field(const std::filesystem::path& file) {
   const auto text = read_text_file(file);
   if (!text) return text.error();

@@ -22,9 +22,6 @@ Result<Response> read_response(const std::filesystem::path& file);
 Result<Lens> read_lens(const std::filesystem::path& file);
 Result<FlatField> read_flat_field(const std::filesystem::path& file);
 
-// The text of lens.json; calibration adds its own keys to it.
-std::string lens_to_json(const Lens& lens);
-
 // The three files as one JSON text and back: what a recording carries as its attachment.
 std::string calibration_to_json(const Calibration& calibration);
 Result<Calibration> calibration_from_json(const std::string& text, const std::string& name_for_errors);
