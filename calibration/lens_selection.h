@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "calibration/lens_adjustment.h"
+
+namespace lightwell {
+
+// How much of the model the data support.
+struct LensSelection {
+  LensFreedom freedom;
+  double held_out_rms_px = 0;  // √mean(du² + dv²) of views that were not fitted to, their poses alone
+};
+
+// Aspect by the corrected Akaike criterion (Hurvich and Tsai 1989). Coefficients by cross-validation in at most
+// five parts by views: the most whose held-out error is within 1 % of the best. Not the fewest: a coefficient
+// wrongly held at 0 biases the others by more than their standard deviation, one wrongly freed does not.
+// lens, views: solved with everything free.
+LensSelection select_freedom(const Lens& lens, const std::vector<PosedView>& views);
+
+}  // namespace lightwell

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "calibration/lens_calibration.h"
+#include "lighting/lens.h"
+
+namespace lightwell {
+
+// How sure the pixel of a direction is, given the covariance of the lens. A lens and a camera turned a little
+// against it project alike, and no calibration tells them apart: the turn that undoes most of an error over the
+// field is taken out first (the idea of mrcal's projection uncertainty, there with poses of the boards).
+class ProjectionUncertainty {
+ public:
+  // The field: every direction up to lens.max_theta_rad, equal solid angles weighing equally.
+  ProjectionUncertainty(const Lens& lens, const Eigen::Matrix<double, 8, 8>& covariance);
+
+  // Covariance of the pixel, px².
+  [[nodiscard]] Eigen::Matrix2d covariance_px2(const Vec3d& direction) const;
+  // Standard deviation along the worst axis, px.
+  [[nodiscard]] double worst_px(const Vec3d& direction) const;
+  // The turn (radians about x, y, z of the camera) that undoes most of a change of the lens.
+  [[nodiscard]] Vec3d undoing_turn(const Eigen::Matrix<double, 8, 1>& change) const {
+    return turn_dlens_ * change;
+  }
+
+ private:
+  Lens lens_;
+  Eigen::Matrix<double, 8, 8> covariance_;
+  Eigen::Matrix<double, 3, 8> turn_dlens_;
+};
+
+// Points that count, by zenith angle and azimuth: [ring][sector].
+struct Coverage {
+  double ring_deg = 10;
+  std::vector<std::vector<std::size_t>> points;
+
+  static constexpr std::size_t kSectors = 12;
+};
+Coverage coverage_of(const LensCalibration& calibration, const TargetViews& target_views);
+
+// Azimuth of a direction in the camera's frame, in [0, 2π): 0 at the top of the image, growing to its right.
+double azimuth_rad(const Vec3d& camera_direction);
+
+}  // namespace lightwell
