@@ -155,9 +155,10 @@ Status write_calibration(const std::filesystem::path& directory, const Calibrati
     return Error{ErrorKind::failed, directory.string() + ": cannot make the folder: " + error.message()};
   json response = response_to_json(calibration.response, true);
   add_colour_matrix(response, calibration.rec709_from_camera);
-  const std::pair<const char*, json> files[] = {{"response.json", std::move(response)},
-                                                {"lens.json", lens_to_json(calibration.lens)},
-                                                {"flat.json", flat_field_to_json(calibration.flat)}};
+  // What a calibration may lack comes first: whoever waits for lens.json finds the folder whole.
+  const std::pair<const char*, json> files[] = {{"flat.json", flat_field_to_json(calibration.flat)},
+                                                {"response.json", std::move(response)},
+                                                {"lens.json", lens_to_json(calibration.lens)}};
   for (const auto& [name, content] : files)
     if (Status status = write_file_atomically(directory / name, content.dump() + "\n"); !status)
       return status;

@@ -13,7 +13,7 @@ namespace lightwell {
 // A calibration directory: response.json, lens.json and, where the camera has one, flat.json (schemas in
 // docs/conventions.md). Reading checks every field and names file, field, value and range; unknown keys are
 // kept quiet, an unknown schema version is an error. Writing is whole or not at all (temporary file, fsync,
-// rename).
+// rename), lens.json last.
 Result<Calibration> read_calibration(const std::filesystem::path& directory);
 Status write_calibration(const std::filesystem::path& directory, const Calibration& calibration);
 
