@@ -206,7 +206,7 @@ std::optional<Value> to_value(const toml::node& node) {
   return std::nullopt;
 }
 
-void remember(Origins& origins, const std::string& key, std::string origin) {
+void remember(Origins& origins, const std::string& key, const std::string& origin) {
   for (auto& [name, where] : origins)
     if (name == key) where = origin;
 }
