@@ -86,6 +86,7 @@ void FramePath::process(const FrameInfo& info, std::span<const std::byte> codes)
     out.map = shape_;
     out.shape = shape_number_;
     out.lights.reserve(static_cast<std::size_t>(options_.lights.count));
+    out.method = options_.method;
     std::strncpy(out.calibration_id.data(), calibration_.id.c_str(), out.calibration_id.size() - 1);
   }
 

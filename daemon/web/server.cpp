@@ -383,7 +383,7 @@ Answer WebServer::Impl::status() {
 Answer WebServer::Impl::lights() {
   const auto lease = snapshots.wait_newer(0, 0ms);
   if (!lease) return error_answer(503, kNoFrame);
-  return {200, "application/json", lights_json(*lease, options.method)};
+  return {200, "application/json", lights_json(*lease)};
 }
 
 Answer WebServer::Impl::metrics() {

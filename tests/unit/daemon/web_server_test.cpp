@@ -31,8 +31,7 @@ using testing::HasSubstr;
 
 class WebServerTest : public testing::Test {
  protected:
-  WebServerTest()
-      : server_(WebServer::start({.listen = "127.0.0.1:0", .method = "havran"}, channel_, control_).value()) {
+  WebServerTest() : server_(WebServer::start({.listen = "127.0.0.1:0"}, channel_, control_).value()) {
     control_.change([](DaemonStatus& status) {
       status.version = "0.1.0";
       status.source = "aravis:127.0.0.1";
