@@ -109,8 +109,8 @@ std::unique_ptr<LightSource> fixed_lights(const LightSet& lights, int max_lights
 Result<std::unique_ptr<LightSource>> environment_lights(const EnvironmentOptions& options) {
   auto environment = read_environment(options.file);
   if (!environment) return environment.error();
-  if (const std::string repaired = environment->repaired(options.file); !repaired.empty())
-    std::fprintf(stderr, "lightwell-render: %s\n", repaired.c_str());
+  if (const std::string remark = environment->remark(options.file); !remark.empty())
+    std::fprintf(stderr, "lightwell-render: %s\n", remark.c_str());
   return std::unique_ptr<LightSource>(
       std::make_unique<EnvironmentLights>(options, std::move(environment->image)));
 }
