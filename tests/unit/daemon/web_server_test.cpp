@@ -231,7 +231,6 @@ TEST(FisheyePicture, AnyMapGivesAPicture) {
       PolarMap map = PolarMap::make({.rings = 1, .sectors = 1, .theta_max_rad = 1.7}, channels);
       std::fill(map.radiance.begin(), map.radiance.end(), level);
       EXPECT_EQ(fisheye_picture(map, 7).size(), 147u);
-      EXPECT_TRUE(lat_long_from_polar_map(map).at(0, 0).isFinite().all());
     }
 }
 
