@@ -116,9 +116,9 @@ TEST_F(Chain, TerminationClosesTheTake) {
 
 TEST_F(Chain, FullDiskEndsTheTakeAndNotTheLight) {
   start_camera({"--scenario", "static", "--size", "320x240", "--rate", "30"});
-  ChildProcess::Limits limits;
-  limits.file_bytes = 8'000'000;  // 52 frames, three clusters of half a second
-  start_daemon("", limits);
+  ChildProcess::Options options;
+  options.file_bytes = 8'000'000;  // 52 frames, three clusters of half a second
+  start_daemon("", options);
   ASSERT_TRUE(published_reaches(5));
   ASSERT_EQ(post("/api/v1/record", R"({"action": "start", "file": "take.mkv"})"), 200);
   ASSERT_TRUE(eventually([&] { return status().value("alarm", "") != ""; })) << status();
