@@ -48,8 +48,7 @@ std::optional<std::uint64_t> number_of(const std::string& name, const Pattern& p
 }  // namespace
 
 bool is_numbered_sequence(const std::string& pattern) {
-  std::error_code ignored;
-  return find_placeholder(pattern).has_value() && !std::filesystem::is_regular_file(pattern, ignored);
+  return find_placeholder(pattern).has_value();
 }
 
 Result<std::vector<std::filesystem::path>> sequence_files(const std::string& text) {

@@ -170,10 +170,13 @@ int run(CommandLine& c) {
   return told.failed() ? fail(told.error()) : 0;
 }
 
-int run(int argc, char** argv) {
+}  // namespace
+}  // namespace lightwell::simulator
+
+int main(int argc, char** argv) {
   CLI::App app("A simulated GigE Vision lighting probe that looks at known light.", "lightwell-camera");
-  CommandLine command_line;
-  declare(app, command_line);
+  lightwell::simulator::CommandLine command_line;
+  lightwell::simulator::declare(app, command_line);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -181,15 +184,8 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "lightwell-camera: %s\n", error.what());
     return 2;
   }
-  return run(command_line);
-}
-
-}  // namespace
-}  // namespace lightwell::simulator
-
-int main(int argc, char** argv) {
   try {
-    return lightwell::simulator::run(argc, argv);
+    return lightwell::simulator::run(command_line);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "lightwell-camera: %s\n", error.what());
     return 1;

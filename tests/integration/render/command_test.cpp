@@ -3,12 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <csignal>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <thread>
 
-#include "interface/atomic_file.h"
 #include "interface/environment_io.h"
 #include "interface/light_set_io.h"
 #include "render/egl_context.h"
@@ -19,8 +16,7 @@
 namespace lightwell {
 namespace {
 
-using test::ChildProcess;
-using test::start_render;
+using test::Program;
 
 class Command : public ::testing::Test {
  protected:
@@ -39,9 +35,9 @@ class Command : public ::testing::Test {
   }
   void expect_refused(const std::vector<std::string>& words, int exit_code, const std::string& named,
                       const std::vector<std::string>& environment = {}) {
-    ChildProcess program = start_render(folder_.path(), words, environment);
+    Program program(folder_.path(), words, environment);
     EXPECT_EQ(program.wait(), exit_code) << named;
-    const std::string errors = program.stderr_text();
+    const std::string errors = program.errors();
     EXPECT_NE(errors.find(named), std::string::npos) << errors;
     EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
   }
@@ -52,10 +48,9 @@ class Command : public ::testing::Test {
 };
 
 TEST_F(Command, WritesFramesNumberedFromZeroAndTheStatisticsOfTheContract) {
-  ChildProcess program =
-      start_render(folder_.path(), arguments({"--frames", "2", "--out", file("f_%04d.exr"), "--out",
-                                              file("last.png"), "--stats", file("stats.json")}));
-  ASSERT_EQ(program.wait(), 0) << program.stderr_text();
+  Program program(folder_.path(), arguments({"--frames", "2", "--out", file("f_%04d.exr"), "--out",
+                                             file("last.png"), "--stats", file("stats.json")}));
+  ASSERT_EQ(program.wait(), 0) << program.errors();
   EXPECT_TRUE(std::filesystem::exists(file("f_0000.exr")));
   EXPECT_TRUE(std::filesystem::exists(file("f_0001.exr")));
   EXPECT_FALSE(std::filesystem::exists(file("f_0002.exr")));
@@ -80,11 +75,10 @@ TEST_F(Command, AUniformEnvironmentReturnsAlbedoAndTheLowerHalfAddsNothingToTheG
   ASSERT_TRUE(
       write_environment(file("sky.exr"), LatLongImage{64, 32, std::vector<Rgb>(64 * 32, Rgb::Ones())}));
   for (const char* part : {"--hemisphere", "--sphere"}) {
-    ChildProcess program =
-        start_render(folder_.path(),
-                     {"--scene", LIGHTWELL_STAGE, "--environment", file("sky.exr"), part, "--lights", "64",
-                      "--headless", "--size", "32x24", "--shadow-size", "64", "--out", file("sky_out.exr")});
-    ASSERT_EQ(program.wait(), 0) << program.stderr_text();
+    Program program(folder_.path(),
+                    {"--scene", LIGHTWELL_STAGE, "--environment", file("sky.exr"), part, "--lights", "64",
+                     "--headless", "--size", "32x24", "--shadow-size", "64", "--out", file("sky_out.exr")});
+    ASSERT_EQ(program.wait(), 0) << program.errors();
     const auto picture = read_environment(file("sky_out.exr"));
     ASSERT_TRUE(picture.ok());
     // 64 lights of a uniform sky err by less than this on a normal; the objects hide a little of it.
@@ -96,11 +90,10 @@ TEST_F(Command, ASpinningEnvironmentTurnsTheShadows) {
   LatLongImage lamp{64, 32, std::vector<Rgb>(64 * 32, Rgb::Zero())};
   lamp.at(10, 12) = Rgb::Constant(1000);
   ASSERT_TRUE(write_environment(file("lamp.exr"), lamp));
-  ChildProcess program =
-      start_render(folder_.path(),
-                   {"--scene", LIGHTWELL_STAGE, "--environment", file("lamp.exr"), "--lights", "1", "--spin",
-                    "180", "--frames", "3", "--headless", "--size", "32x24", "--out", file("l_%d.exr")});
-  ASSERT_EQ(program.wait(), 0) << program.stderr_text();
+  Program program(folder_.path(),
+                  {"--scene", LIGHTWELL_STAGE, "--environment", file("lamp.exr"), "--lights", "1", "--spin",
+                   "180", "--frames", "3", "--headless", "--size", "32x24", "--out", file("l_%d.exr")});
+  ASSERT_EQ(program.wait(), 0) << program.errors();
   const auto first = read_environment(file("l_0.exr"));
   const auto half = read_environment(file("l_1.exr"));
   const auto whole = read_environment(file("l_2.exr"));
@@ -114,9 +107,8 @@ TEST_F(Command, ASpinningEnvironmentTurnsTheShadows) {
 }
 
 TEST_F(Command, FewerShadowMapsThanLightsFoldTheLights) {
-  ChildProcess program =
-      start_render(folder_.path(), arguments({"--shadow-maps", "1", "--stats", file("stats.json")}));
-  ASSERT_EQ(program.wait(), 0) << program.stderr_text();
+  Program program(folder_.path(), arguments({"--shadow-maps", "1", "--stats", file("stats.json")}));
+  ASSERT_EQ(program.wait(), 0) << program.errors();
   EXPECT_EQ(nlohmann::json::parse(read_text_file(file("stats.json")).value())["lights"], 1);
 }
 
@@ -157,11 +149,11 @@ TEST_F(Command, WithoutADisplayAndAPurposeItSaysSo) {
 }
 
 TEST_F(Command, WithoutADisplayButAPurposeItRendersOffScreen) {
-  ChildProcess program = start_render(folder_.path(),
-                                      {"--scene", LIGHTWELL_STAGE, "--light-set", lights_, "--size", "16x12",
-                                       "--shadow-size", "16", "--out", file("a.png")},
-                                      {"DISPLAY", "WAYLAND_DISPLAY"});
-  EXPECT_EQ(program.wait(), 0) << program.stderr_text();
+  Program program(folder_.path(),
+                  {"--scene", LIGHTWELL_STAGE, "--light-set", lights_, "--size", "16x12", "--shadow-size",
+                   "16", "--out", file("a.png")},
+                  {"DISPLAY", "WAYLAND_DISPLAY"});
+  EXPECT_EQ(program.wait(), 0) << program.errors();
   EXPECT_TRUE(std::filesystem::exists(file("a.png")));
 }
 
@@ -171,17 +163,17 @@ TEST_F(Command, WithoutAnEglDriverItSaysSoInOneLine) {
 }
 
 TEST_F(Command, ATerminationSignalEndsInOrderWithThePictureWritten) {
-  ChildProcess program = start_render(
-      folder_.path(), arguments({"--seconds", "600", "--out", file("f_%d.png"), "--out", file("last.exr")}));
-  while (!std::filesystem::exists(file("f_0.png")) && program.running())
+  Program program(folder_.path(),
+                  arguments({"--seconds", "600", "--out", file("f_%d.png"), "--out", file("last.exr")}));
+  while (!std::filesystem::exists(file("f_0.png")) && !program.ended())
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  program.send(SIGTERM);
-  EXPECT_EQ(program.wait(), 0) << program.stderr_text();
+  program.terminate();
+  EXPECT_EQ(program.wait(), 0) << program.errors();
   EXPECT_TRUE(std::filesystem::exists(file("last.exr")));
 }
 
 TEST_F(Command, HelpEndsWell) {
-  ChildProcess program = start_render(folder_.path(), {"--help"});
+  Program program(folder_.path(), {"--help"});
   EXPECT_EQ(program.wait(), 0);
 }
 

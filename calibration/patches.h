@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lighting/result.h"
+
+namespace lightwell::calibration {
+
+// A grey patch of known luminance and the code that the camera gave for it.
+struct Patch {
+  std::string name;  // where it stands: "line 7", or the patch's own name
+  double luminance_cd_m2 = 0;
+  double code = 0;
+  double code_sigma = 0;  // standard deviation of code; 0: not known
+  std::string channel;    // empty: there is one only
+};
+
+struct PatchSet {
+  std::string file;
+  std::vector<Patch> fit, check;
+};
+
+// Columns luminance_cd_m2, code [, code_sigma] [, channel] [, use] [, name]; use: fit (the default) or check.
+// bad_input: columns missing, values that are not numbers or out of range.
+Result<PatchSet> read_patches(const std::filesystem::path& file);
+
+// The patches of one channel.
+PatchSet of_channel(const PatchSet& set, const std::string& channel);
+// In order of appearance.
+std::vector<std::string> channels_of(const PatchSet& set);
+
+// Sorted by luminance, and fit to be fitted: enough of them, no luminance twice, none clipped (code ≤ 0 or ≥ clip_code),
+// codes that rise with luminance by more than noise takes away. bad_input names the patch.
+Result<PatchSet> ordered_and_checked(PatchSet set, double clip_code);
+
+}  // namespace lightwell::calibration

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "interface/calibration_io.h"
+#include "tests/integration/photometric/photometric_fixture.h"
+
+namespace lightwell {
+namespace {
+
+using test::PhotometricTest;
+
+class CalibrateResponse : public PhotometricTest {
+ protected:
+  static constexpr LogResponse kTruth{800, 208, 0.05};
+
+  // Six patches over six decades and two to check, codes to a tenth.
+  static std::string good_csv() {
+    std::string text = "name,luminance_cd_m2,code,code_sigma,use\n";
+    for (const double l : {0.1, 1.6, 25.0, 400.0, 6300.0, 1e5}) text += row(l, "fit");
+    for (const double l : {8.0, 2000.0}) text += row(l, "check");
+    return text;
+  }
+  static std::string row(double luminance, const std::string& use) {
+    char line[120];
+    std::snprintf(line, sizeof line, "grey %g,%g,%.1f,0.5,%s\n", luminance, luminance, kTruth.code(luminance),
+                  use.c_str());
+    return line;
+  }
+  std::vector<std::string> command(const std::string& csv) const {
+    return {"response", path(csv), "--out", path("response.json"), "--json"};
+  }
+};
+
+TEST_F(CalibrateResponse, WritesAResponseThatTheDaemonReadsAndAReport) {
+  write("patches.csv", good_csv());
+  const auto run = calibrate(command("patches.csv"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto response = read_response(path("response.json"));
+  ASSERT_TRUE(response) << response.error().message;
+  for (double l = 0.1; l < 1e5; l *= 2)  // codes rounded to a tenth
+    EXPECT_NEAR(response->luminance_cd_m2(kTruth.code(l)) / l, 1, 2e-3);
+
+  const auto report = nlohmann::json::parse(run.out);
+  EXPECT_EQ(report.at("model"), "log");
+  EXPECT_EQ(report.at("selection"), "AICc");
+  EXPECT_EQ(report.at("fit").size(), 6U);
+  EXPECT_EQ(report.at("covariance").size(), 3U);
+  ASSERT_EQ(report.at("check").size(), 2U);
+  for (const auto& check : report.at("check")) {
+    EXPECT_TRUE(check.at("inside_95").get<bool>());
+    EXPECT_LT(std::abs(check.at("stops").get<double>()), 0.01);
+  }
+  EXPECT_TRUE(report.at("rejected").empty());
+  const auto range = report.at("usable_range").at("luminance_cd_m2");
+  EXPECT_LT(range[0].get<double>(), 1);
+  EXPECT_GT(range[1].get<double>(), 9e4);
+
+  const auto table = read_json("response.json").at("table");
+  const auto &code = table.at("code"), &luminance = table.at("luminance_cd_m2");
+  ASSERT_EQ(code.size(), luminance.size());
+  ASSERT_EQ(code.size(), table.at("relative_sigma").size());
+  for (std::size_t i = 1; i < code.size(); ++i) {
+    ASSERT_EQ(code[i].get<int>(), code[i - 1].get<int>() + 1);
+    ASSERT_GT(luminance[i].get<double>(), luminance[i - 1].get<double>());
+  }
+  EXPECT_GT(luminance[0].get<double>(), 0);
+}
+
+TEST_F(CalibrateResponse, NamesTheBadPatchAndGoesOnWithoutIt) {
+  std::string text = good_csv();
+  text.replace(text.find(",25,"), 4, ",33,");
+  write("patches.csv", text);
+  const auto run = calibrate(command("patches.csv"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(nlohmann::json::parse(run.out).at("rejected"), nlohmann::json::array({"grey 25"}));
+}
+
+TEST_F(CalibrateResponse, ColoursShareTheCurveAndMakeGreyGrey) {
+  std::string text = "luminance_cd_m2,code,channel\n";
+  for (const auto& [channel, gain] : {std::pair{"R", 0.5}, {"G", 1.0}, {"B", 0.8}})
+    for (const double l : {0.1, 1.6, 25.0, 400.0, 6300.0, 1e5})
+      text += std::to_string(l) + "," + std::to_string(kTruth.code(gain * l)) + "," + channel + "\n";
+  write("patches.csv", text);
+  const auto run = calibrate(command("patches.csv"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto m = read_json("response.json").at("rec709_from_camera");
+  EXPECT_NEAR(m[0][0].get<double>(), 2, 1e-3);  // six digits of the codes
+  EXPECT_NEAR(m[1][1].get<double>(), 1, 1e-3);
+  EXPECT_NEAR(m[2][2].get<double>(), 1.25, 1e-3);
+}
+
+TEST_F(CalibrateResponse, BadInputIsRefusedInOneLineAndNothingIsChanged) {
+  const struct {
+    const char *csv, *names;
+  } cases[] = {
+      {"", "is empty"},
+      {"luminance,code\n1,2\n", "column luminance_cd_m2 is missing"},
+      {"luminance_cd_m2,code\n1,100\n10,200\n100,300\n", "number of patches to fit = 3"},
+      {"luminance_cd_m2,code\n1,100\n10,200\n100,300\n1000,nan\n", "line 5: code = nan"},
+      {"luminance_cd_m2,code\n1,100\n10,200\n100,300\n1000,4x\n", "line 5: code = 4x"},
+      {"luminance_cd_m2,code\n1,100\n10,200\n100,300\n-5,400\n", "line 5: luminance_cd_m2 = -5"},
+      {"luminance_cd_m2,code\n1,100\n10,200\n100,300\n100,400\n",
+       "line 5: luminance_cd_m2 = 100 stands in line 4"},
+      {"luminance_cd_m2,code\n1,100\n10,200\n100,150\n1000,400\n", "line 4: code = 150"},
+      {"luminance_cd_m2,code\n1,100\n10,200\n100,300\n1000,1023\n", "line 5: code = 1023 is clipped"},
+      {"luminance_cd_m2,code\n1,0\n10,200\n100,300\n1000,1000\n", "line 2: code = 0 is clipped"},
+      {"luminance_cd_m2,code\n1,100\n10,200,7\n", "line 3: 3 fields: allowed 2"},
+      {"luminance_cd_m2,code,use\n1,100,never\n", "line 2: use = never"},
+  };
+  for (const auto& c : cases) {
+    write("patches.csv", c.csv);
+    SCOPED_TRACE(c.names);
+    expect_refused(command("patches.csv"), 3, c.names, "response.json");
+  }
+  expect_refused(command("absent.csv"), 3, "absent.csv", "response.json");
+  expect_refused({"response", path(""), "--out", path("response.json")}, 3, path(""), "response.json");
+}
+
+TEST_F(CalibrateResponse, WrongUsageEndsWithTwoAndAMissingFolderWithOne) {
+  write("patches.csv", good_csv());
+  auto arguments = command("patches.csv");
+  arguments.insert(arguments.end(), {"--model", "cubic"});
+  expect_refused(arguments, 2, "--model = cubic", "response.json");
+  arguments = command("patches.csv");
+  arguments.insert(arguments.end(), {"--luminance-error", "nan"});
+  expect_refused(arguments, 2, "--luminance-error", "response.json");
+  arguments = command("patches.csv");
+  arguments.insert(arguments.end(), {"--channel", "X"});
+  expect_refused(arguments, 2, "--channel = X", "response.json");
+  const auto run = calibrate({"response", path("patches.csv"), "--out", path("no/response.json")});
+  EXPECT_EQ(run.exit_code, 1) << run.err;
+}
+
+}  // namespace
+}  // namespace lightwell

@@ -1,0 +1,226 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/response_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "calibration/student.h"
+
+namespace lightwell::calibration {
+namespace {
+
+const LogResponse kLog{800, 208, 0.05};
+
+// Patches at these luminances; every luminance wrong by `error`, every code by `noise`.
+PatchSet patches_of(const Model& model, const std::vector<double>& luminances, double error = 0,
+                    double noise = 0, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  PatchSet set;
+  set.file = "patches.csv";
+  for (const double l : luminances) {
+    const double code = model_code(model, l) + noise * normal(random);
+    set.fit.push_back(
+        {"patch " + std::to_string(set.fit.size() + 1), l * (1 + error * normal(random)), code, noise, ""});
+  }
+  return set;
+}
+
+const std::vector<double> kSixDecades = {0.1, 1.6, 25, 400, 6300, 1e5};
+
+void expect_refused(const PatchSet& set, const std::string& text, ResponseFitOptions options = {}) {
+  const auto fit = fit_response(set, options);
+  ASSERT_FALSE(fit) << text;
+  EXPECT_EQ(fit.error().kind, ErrorKind::bad_input);
+  EXPECT_NE(fit.error().message.find(text), std::string::npos) << fit.error().message;
+  EXPECT_EQ(fit.error().message.find("patches.csv: "), 0U) << fit.error().message;
+}
+
+TEST(Student, KnownQuantiles) {  // tables, to their last digit
+  EXPECT_NEAR(student_two_sided(0.95, 3), 3.182446, 1e-6);
+  EXPECT_NEAR(student_two_sided(0.95, 7), 2.364624, 1e-6);
+  EXPECT_NEAR(student_two_sided(0.99, 1), 63.656741, 1e-5);
+  EXPECT_NEAR(student_cdf(-1, 5), 0.181609, 1e-6);
+}
+
+TEST(ResponseFit, ExactPatchesGiveTheExactResponse) {
+  const LinLogResponse lin_log{64, 30, 20};
+  const LinearResponse linear{64, 0.03};
+  const PiecewiseLinearResponse companded{{{0, 60}, {12, 1084}, {95, 2108}, {1500, 3132}, {24000, 4000}}};
+  const std::vector<double> twelve = {0.5, 4, 9, 20, 50, 90, 200, 700, 1400, 3000, 9000, 20000};
+  const struct {
+    Model model;
+    Curve curve;
+    std::vector<double> luminances;
+  } cases[] = {{kLog, Curve::log, kSixDecades},
+               {lin_log, Curve::linlog, {0.1, 1, 10, 100, 1e4, 1e6}},
+               {linear, Curve::linear, {10, 100, 1000, 1e4, 1e5}},
+               {companded, Curve::pwl, twelve}};
+  for (const auto& c : cases) {
+    const auto fit = fit_response(patches_of(c.model, c.luminances), {});
+    ASSERT_TRUE(fit) << fit.error().message;
+    EXPECT_EQ(name(fit->curve), name(c.curve));  // auto finds the form
+    for (double l = c.luminances.front(); l < c.luminances.back(); l *= 1.3)
+      EXPECT_NEAR(fit->response.luminance_cd_m2(model_code(c.model, l)) / l, 1, 1e-4)
+          << name(c.curve) << " " << l;
+    for (const PatchResidual& r : fit->fit) EXPECT_FALSE(r.rejected);
+  }
+}
+
+TEST(ResponseFit, SixPatchesOverSixDecadesWithOnePercentErrorGiveTwoPercent) {
+  double sum = 0;
+  int large = 0;
+  constexpr int kSeeds = 200;
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+    const auto fit = fit_response(patches_of(kLog, kSixDecades, 0.01, 0.3, seed), {});
+    ASSERT_TRUE(fit) << fit.error().message;
+    ASSERT_EQ(fit->curve, Curve::log);
+    double worst = 0;
+    for (double l = 0.1; l <= 1e5; l *= 1.5)
+      worst = std::max(worst, std::abs(fit->response.luminance_cd_m2(kLog.code(l)) / l - 1));
+    sum += worst;
+    large += worst > 0.02;
+  }
+  // The darkest patch alone tells the toe, so its own error of 1 % stays, and reaches 2 % in one set of twenty.
+  EXPECT_LT(sum / kSeeds, 0.015);
+  EXPECT_LT(large, kSeeds / 10);
+}
+
+// The claim is tested against sampled noise (mrcal's habit): two check patches a set.
+TEST(ResponseFit, NinetyFivePercentIntervalHoldsTheCheckPatchesAsOftenAsItSays) {
+  const LinLogResponse lin_log{64, 30, 20};
+  for (const Model& model : {Model(kLog), Model(lin_log)}) {
+    int inside = 0, all = 0;
+    for (unsigned seed = 1; seed <= 500; ++seed) {
+      PatchSet set = patches_of(model, kSixDecades, 0.01, 0.3, seed);
+      set.check = patches_of(model, {8, 2000}, 0.01, 0.3, 10000 + seed).fit;
+      const auto fit = fit_response(set, {});
+      ASSERT_TRUE(fit) << fit.error().message;
+      for (const PatchResidual& r : fit->check) inside += r.inside, ++all;
+    }
+    const double share = static_cast<double>(inside) / all;
+    // 95 % at least, less three standard deviations of 1000 draws, 0.7 % each; a little more, because the claim
+    // leaves room for noise other than stated.
+    EXPECT_GE(share, 0.93);
+    EXPECT_LE(share, 0.99);
+  }
+}
+
+TEST(ResponseFit, ParameterCovarianceMatchesTheScatterOfTheParameters) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), square = sum, claimed = sum;
+  constexpr int kSeeds = 400;
+  const double true_values[] = {kLog.a, kLog.b, kLog.c};
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+    const auto fit = fit_response(patches_of(kLog, kSixDecades, 0.01, 0.3, seed), {Curve::log});
+    ASSERT_TRUE(fit);
+    const auto p = parameters_of(fit->response.model);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const double d = p[static_cast<std::size_t>(i)] - true_values[i];
+      sum[i] += d;
+      square[i] += d * d;
+      claimed[i] += fit->covariance(i, i);
+    }
+  }
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    EXPECT_NEAR(square[i] / claimed[i], 1, 0.3) << i;  // √(2/400) = 7 %, and the scale's own scatter
+    EXPECT_LT(std::abs(sum[i] / kSeeds),
+              3 * std::sqrt(claimed[i] / kSeeds / kSeeds) + 0.1 * std::sqrt(claimed[i] / kSeeds));
+  }
+}
+
+TEST(ResponseFit, NoisierPatchesThanStatedWidenTheInterval) {
+  double stated = 0, noisy = 0;
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    stated +=
+        fit_response(patches_of(kLog, kSixDecades, 0.01, 0, seed), {Curve::log})->relative_error_95(2000);
+    noisy +=
+        fit_response(patches_of(kLog, kSixDecades, 0.03, 0, seed), {Curve::log})->relative_error_95(2000);
+  }
+  EXPECT_GT(noisy, 1.5 * stated);
+}
+
+TEST(ResponseFit, OneBadPatchIsFoundNamedAndLeftOut) {
+  for (std::size_t bad = 1; bad < 5; ++bad)  // the ends are one parameter's only witness, or nearly
+    for (const double factor : {0.7, 1.4}) {
+      PatchSet set = patches_of(kLog, kSixDecades, 0.005, 0.3, 7);
+      set.fit[bad].luminance_cd_m2 *= factor;
+      const auto fit = fit_response(set, {});
+      ASSERT_TRUE(fit) << fit.error().message;
+      EXPECT_EQ(fit->curve, Curve::log);
+      for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(fit->fit[i].rejected, i == bad) << bad << " " << i;
+      for (double l = 0.1; l <= 1e5; l *= 2)
+        EXPECT_NEAR(fit->response.luminance_cd_m2(kLog.code(l)) / l, 1, 0.03);  // patches of 0.5 %, one fewer
+      EXPECT_NEAR(fit->fit[bad].relative_error, 1 / factor - 1, 0.03);
+    }
+}
+
+TEST(ResponseFit, GoodPatchesAreRarelyRejected) {
+  int rejected = 0;
+  for (unsigned seed = 1; seed <= 500; ++seed) {
+    const auto fit = fit_response(patches_of(kLog, kSixDecades, 0.01, 0.3, seed), {Curve::log});
+    for (const PatchResidual& r : fit->fit) rejected += r.rejected;
+  }
+  EXPECT_LE(rejected, 15);  // 1 % asked, 5 expected, √5 a standard deviation
+}
+
+TEST(ResponseFit, UsableRangeEndsWhereTheErrorReachesFivePercentAndNeverLeavesThePatches) {
+  const auto fit = fit_response(patches_of(kLog, {0.002, 1.6, 25, 400, 6300, 1e5}, 0.01, 1, 3), {Curve::log});
+  ASSERT_TRUE(fit && fit->usable_codes);
+  const auto [low, high] = *fit->usable_codes;
+  EXPECT_GT(low, fit->response.code(0.002));  // far below the toe nothing can be told
+  EXPECT_LE(high, fit->response.code(fit->fit.back().patch.luminance_cd_m2) + 1e-6);
+  for (double code = low; code <= high; code += 10) EXPECT_LT(fit->relative_error_95(code), 0.05);
+  EXPECT_NEAR(fit->relative_error_95(low - 4), 0.05, 0.01);
+}
+
+TEST(ResponseFit, BlackCodeIsTheFirstWithLight) {
+  const auto fit = fit_response(patches_of(kLog, kSixDecades), {});
+  EXPECT_GT(fit->response.luminance_cd_m2(fit->response.black_code), 0);
+  EXPECT_LE(fit->response.luminance_cd_m2(fit->response.black_code - 1), 0);
+}
+
+TEST(ResponseFit, WhatCannotBeFittedIsRefusedByName) {
+  const PatchSet good = patches_of(kLog, kSixDecades);
+  PatchSet set = good;
+  set.fit.resize(3);
+  expect_refused(set, "number of patches to fit = 3: allowed at least 4");
+  set = good;
+  set.fit[2].luminance_cd_m2 = set.fit[1].luminance_cd_m2;
+  expect_refused(set, "patch 3: luminance_cd_m2 = 1.6 stands in patch 2 too");
+  set = good;
+  std::swap(set.fit[2].code, set.fit[3].code);
+  expect_refused(set, "not monotone");
+  set = good;
+  set.fit[5].code = 4095;
+  expect_refused(set, "patch 6: code = 4095 is clipped");
+  set = good;
+  set.check = {set.fit[0]};
+  set.check[0].code = 0;
+  expect_refused(set, "code = 0 is clipped");
+  set = good;
+  for (Patch& p : set.fit) p.code = 1000;
+  expect_refused(set, "");
+  set = good;
+  set.fit.resize(5);
+  ResponseFitOptions pwl;
+  pwl.curve = Curve::pwl;
+  set.fit.resize(4);
+  expect_refused(set, "model pwl: 4 parameters need 5 patches, there are 4", pwl);
+}
+
+TEST(ResponseFit, BitsAreTheFewestThatHoldTheCodesUnlessGiven) {
+  EXPECT_EQ(fit_response(patches_of(kLog, kSixDecades), {})->response.bits, 12);
+  ResponseFitOptions options;
+  options.bits = 13;
+  const auto fit = fit_response(patches_of(kLog, kSixDecades), options);
+  ASSERT_TRUE(fit) << fit.error().message;
+  EXPECT_EQ(fit->response.bits, 13);
+  EXPECT_EQ(fit->response.clip_code, 8191);
+}
+
+}  // namespace
+}  // namespace lightwell::calibration
