@@ -3,11 +3,13 @@
 #include "render/casters.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <optional>
-#include <unordered_map>
+
+#include "render/caster_mesh.h"
 
 namespace lightwell::render {
 namespace {
@@ -28,17 +30,6 @@ class Welder {
  private:
   std::map<std::array<float, 3>, Index> known_;
 };
-
-bool is_closed(std::span<const Index> triangles) {
-  std::unordered_map<std::uint64_t, int> edges;
-  const auto key = [](Index a, Index b) { return (static_cast<std::uint64_t>(a) << 32) | b; };
-  for (std::size_t t = 0; t < triangles.size(); t += 3)
-    for (std::size_t e = 0; e < 3; ++e)
-      if (++edges[key(triangles[t + e], triangles[t + (e + 1) % 3])] > 1) return false;
-  for (const auto& [edge, count] : edges)
-    if (!edges.contains(key(static_cast<Index>(edge), static_cast<Index>(edge >> 32)))) return false;
-  return !triangles.empty();
-}
 
 // The front-facing normal where the triangles lie in one plane, facing one way, with the scene at or above
 // it.
@@ -87,7 +78,7 @@ bool Casters::needs_supports(const Vec3f& to_light) const {
   return false;
 }
 
-Casters find_casters(const Scene& scene) {
+Casters find_casters(const Scene& scene, int map_size) {
   Casters casters;
   casters.is_support.assign(scene.primitives.size(), false);
   Vec3f low = Vec3f::Constant(std::numeric_limits<float>::max());
@@ -100,36 +91,47 @@ Casters find_casters(const Scene& scene) {
   const float tolerance = 1e-5f * (high - low).norm();
 
   Welder weld;
-  std::vector<Index> closed;
-  std::vector<Index> open;
-  std::vector<Index> supports;
+  enum Run { closed, open, support };
+  std::vector<std::pair<Run, std::vector<Index>>> meshes;
+  std::vector<Vec3f> object_points;
+  std::vector<bool> in_objects;
   for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
     const Primitive& primitive = scene.primitives[p];
     if (!primitive.casts_shadow) continue;
     std::vector<Index> triangles;
-    for (Index i = 0; i < primitive.index_count; i += 3) {
-      std::array<Index, 3> corner{};
-      for (Index c = 0; c < 3; ++c)
-        corner[c] = weld(scene.vertices[scene.indices[primitive.first_index + i + c]].position);
-      triangles.insert(triangles.end(), corner.begin(), corner.end());
-    }
+    for (Index i = 0; i < primitive.index_count; ++i)
+      triangles.push_back(weld(scene.vertices[scene.indices[primitive.first_index + i]].position));
     const auto normal = support_normal(triangles, weld.positions, tolerance, scene);
     casters.is_support[p] = normal.has_value();
-    if (normal) casters.support_normals.push_back(*normal);
-    auto& run = normal ? supports : is_closed(triangles) ? closed : open;
-    run.insert(run.end(), triangles.begin(), triangles.end());
+    if (normal) {
+      casters.support_normals.push_back(*normal);
+    } else {
+      in_objects.resize(weld.positions.size(), false);
+      for (const Index i : triangles) {
+        if (in_objects[i]) continue;
+        in_objects[i] = true;
+        object_points.push_back(weld.positions[i]);
+      }
+    }
+    meshes.emplace_back(normal ? support : is_closed(triangles) ? closed : open, std::move(triangles));
   }
-  casters.positions = std::move(weld.positions);
-  casters.closed_count = static_cast<Index>(closed.size());
-  casters.open_count = static_cast<Index>(open.size());
-  casters.support_count = static_cast<Index>(supports.size());
-  for (const auto* run : {&closed, &open, &supports})
-    casters.indices.insert(casters.indices.end(), run->begin(), run->end());
-
-  std::vector<Vec3f> object_points;
-  for (const auto* run : {&closed, &open})
-    for (const Index i : *run) object_points.push_back(casters.positions[i]);
   casters.objects = bounding_sphere(object_points);
+  if (map_size > 0) {
+    const float texel_m = 2 * casters.objects.radius / static_cast<float>(map_size);
+    for (auto& [run, triangles] : meshes)
+      if (run != support) triangles = simplify(triangles, weld.positions, kSimplifiedTexels * texel_m);
+  }
+  std::stable_sort(meshes.begin(), meshes.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  // Corners that are left stand together in the order of their use.
+  Welder used;
+  Index* const counts[] = {&casters.closed_count, &casters.open_count, &casters.support_count};
+  for (const auto& [run, triangles] : meshes) {
+    *counts[run] += static_cast<Index>(triangles.size());
+    for (const Index i : triangles) casters.indices.push_back(used(weld.positions[i]));
+  }
+  casters.positions = std::move(used.positions);
+
   for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
     const Primitive& primitive = scene.primitives[p];
     if (primitive.casts_shadow) continue;

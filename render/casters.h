@@ -38,7 +38,13 @@ struct Casters {
   [[nodiscard]] bool needs_supports(const Vec3f& to_light) const;
 };
 
-Casters find_casters(const Scene& scene);
+// Of a texel: how far simplified casters may be from those of the scene. A quarter is not seen among the 2×2
+// texels that a look-up takes part of.
+inline constexpr float kSimplifiedTexels = 0.25f;
+
+// map_size: texels a side of the shadow maps they are drawn into; the objects are simplified by at most
+// kSimplifiedTexels of them. 0: every triangle of the scene. Bounds and supports are the scene's either way.
+Casters find_casters(const Scene& scene, int map_size = 0);
 
 // Within 1 % of the smallest (Bădoiu and Clarkson 2003); contains every point.
 Sphere bounding_sphere(std::span<const Vec3f> points);

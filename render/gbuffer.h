@@ -20,6 +20,8 @@ class GBuffer {
 
   [[nodiscard]] GLuint position_material() const { return position_material_.id(); }
   [[nodiscard]] GLuint surface() const { return surface_.id(); }
+  // 1 where no surface is.
+  [[nodiscard]] GLuint depth() const { return depth_.id(); }
   // Two texels a material, 1024 texels a row: base colour and model; then specular and exponent, or metallic
   // and roughness.
   [[nodiscard]] GLuint materials() const { return materials_.id(); }

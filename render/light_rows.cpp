@@ -26,15 +26,16 @@ std::vector<LightRow> make_light_rows(std::span<const DirectionalLight> lights, 
     const bool with_supports = casters.needs_supports(d);
     Sphere sphere = with_supports ? casters.scene : casters.objects;
     if (!(sphere.radius > 0)) sphere.radius = 1;  // nothing casts: any map does
-    const Vec3f u = (std::abs(d.y()) < 0.9f ? Vec3f::UnitY() : Vec3f::UnitX()).cross(d).normalized();
-    const Vec3f v = d.cross(u);
     LightRow row{};
+    const float extent = 2 * sphere.radius * kDepthPadding;
+    set_row(row.w, d, -1 / extent, 0.5f, sphere.centre);
+    // The direction as shaders read it from w, to the last bit: they choose the same axes.
+    const Vec3f read(row.w[0] * -extent, row.w[1] * -extent, row.w[2] * -extent);
+    const Vec3f u = (std::abs(read.y()) < 0.9f ? Vec3f::UnitY() : Vec3f::UnitX()).cross(read).normalized();
+    const Vec3f v = read.cross(u);
     const float across = 0.5f / sphere.radius * (1 - 4 / static_cast<float>(map_size));
-    // The depth range is padded so that no caster reaches the cleared depth of 1.
-    const float extent = 2 * sphere.radius * 1.01f;
     set_row(row.u, u, across, 0.5f, sphere.centre);
     set_row(row.v, v, across, 0.5f, sphere.centre);
-    set_row(row.w, d, -1 / extent, 0.5f, sphere.centre);
     std::copy_n(light.illuminance.data(), 3, row.illuminance);
     row.extent_m = with_supports ? extent : -extent;
     rows.push_back(row);

@@ -23,6 +23,10 @@ struct LightRow {
   float extent_m;
 };
 
+// The diameter of a map's sphere with the depth range's padding, so that no caster reaches the cleared depth
+// of 1.
+inline constexpr float kDepthPadding = 1.01f;
+
 // 256 of them fill the 16 KB that every OpenGL ES 3.1 guarantees for a uniform block.
 inline constexpr int kMaxLightsPerBlock = 256;
 

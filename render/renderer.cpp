@@ -35,25 +35,52 @@ std::string shading_models(const Scene& scene) {
          "\n#define HAS_METALLIC_ROUGHNESS " + (uses(Material::Model::metallic_roughness) ? "1" : "0") + "\n";
 }
 
+// across = 0.5 / radius = kDepthPadding / extent (make_light_rows).
+std::string map_facts(bool nothing_casts) {
+  return std::string("#define HAS_SHADOWS ") + (nothing_casts ? "0" : "1") + "\n#define MAP_REACH " +
+         std::to_string(kDepthPadding) + "\n";
+}
+
+// Values for a program, which it makes current.
+class Uniforms {
+ public:
+  explicit Uniforms(const gl::Program& program) : program_(program) { glUseProgram(program.id()); }
+  [[nodiscard]] GLint place(const char* name) const { return gl::uniform(program_, name); }
+  void set(const char* name, int value) const { glUniform1i(place(name), value); }
+  void set(const char* name, float value) const { glUniform1f(place(name), value); }
+  void set(const char* name, const float* vector) const { glUniform3fv(place(name), 1, vector); }
+  void set_texture(const char* name, int unit, GLuint texture) const {
+    gl::bind_texture(unit, texture);
+    set(name, unit);
+  }
+
+ private:
+  const gl::Program& program_;
+};
+
 }  // namespace
 
 Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& options) {
   Renderer r;
   r.options_ = options;
-  r.casters_ = find_casters(scene);
+  r.casters_ = find_casters(scene, options.simplify_casters ? options.shadow_size : 0);
   auto gbuffer = GBuffer::create(scene, r.casters_);
   if (!gbuffer) return gbuffer.error();
   auto atlas = ShadowAtlas::create(r.casters_, options.shadow_size);
   if (!atlas) return atlas.error();
   auto tone_mapper = ToneMapper::create();
   if (!tone_mapper) return tone_mapper.error();
-  auto program = gl::make_program("fullscreen_vertex", "shade_fragment", shading_models(scene));
-  if (!program) return program.error();
+  auto surfaces = gl::make_program("fullscreen_vertex", "shade_fragment",
+                                   shading_models(scene) + map_facts(atlas->empty()));
+  if (!surfaces) return surfaces.error();
+  auto background = gl::make_program("fullscreen_vertex", "background_fragment");
+  if (!background) return background.error();
   r.gbuffer_ = std::move(gbuffer).value();
   r.atlas_ = std::move(atlas).value();
   r.tone_mapper_ = std::move(tone_mapper).value();
-  r.program_ = std::move(program).value();
-  glUniformBlockBinding(r.program_.id(), glGetUniformBlockIndex(r.program_.id(), "Lights"), 0);
+  r.surfaces_ = std::move(surfaces).value();
+  r.background_ = std::move(background).value();
+  glUniformBlockBinding(r.surfaces_.id(), glGetUniformBlockIndex(r.surfaces_.id(), "Lights"), 0);
   r.light_block_ =
       gl::make_buffer(GL_UNIFORM_BUFFER, nullptr, kMaxLightsPerBlock * sizeof(LightRow), GL_DYNAMIC_DRAW);
   r.no_vertices_ = gl::make_vertex_array();
@@ -71,7 +98,7 @@ Status Renderer::resize(int width, int height) {
   if (Status s = tone_mapper_.resize(width, height); !s) return s;
   for (Sum& sum : sums_) {
     sum.texture = gl::make_texture(GL_RGBA32F, width, height);
-    auto framebuffer = gl::make_framebuffer({sum.texture.id()}, 0);
+    auto framebuffer = gl::make_framebuffer({sum.texture.id()}, gbuffer_.depth());
     if (!framebuffer) return framebuffer.error();
     sum.framebuffer = std::move(framebuffer).value();
   }
@@ -119,7 +146,7 @@ Status Renderer::render(const LightSet& lights, const SceneCamera& camera, doubl
     glBufferSubData(GL_UNIFORM_BUFFER, 0, static_cast<GLsizeiptr>(block.size_bytes()), block.data());
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, light_block_.id());
     if (!atlas_.empty() && !block.empty())
-      if (Status s = atlas_.draw(block); !s) return s;
+      if (Status s = atlas_.draw(block, light_block_.id()); !s) return s;
     time = lap(time, times_.shadow_ms);
     for (int sample = 0; sample < options_.samples; ++sample) {
       const View view =
@@ -127,7 +154,7 @@ Status Renderer::render(const LightSet& lights, const SceneCamera& camera, doubl
       // With one sample a pixel the G-buffer of the first block serves all blocks.
       if (first == 0 || options_.samples > 1) gbuffer_.draw(view);
       time = lap(time, times_.gbuffer_ms);
-      shade(view, block, lights, first == 0, start_sum, environment_turn_rad);
+      shade(view, static_cast<int>(block.size()), lights, first == 0, start_sum, environment_turn_rad);
       start_sum = false;
       time = lap(time, times_.shading_ms);
     }
@@ -137,46 +164,50 @@ Status Renderer::render(const LightSet& lights, const SceneCamera& camera, doubl
   return {};
 }
 
-void Renderer::shade(const View& view, std::span<const LightRow> rows, const LightSet& lights,
-                     bool first_block, bool start_sum, double environment_turn_rad) {
-  const int earlier = current_;
+void Renderer::shade(const View& view, int light_count, const LightSet& lights, bool first_block,
+                     bool start_sum, double environment_turn_rad) {
+  const GLuint so_far = sums_[current_].texture.id();
   current_ = 1 - current_;
   glBindFramebuffer(GL_FRAMEBUFFER, sums_[current_].framebuffer.id());
   glViewport(0, 0, options_.width, options_.height);
-  glDisable(GL_DEPTH_TEST);
-  glUseProgram(program_.id());
-  const auto integer = [&](const char* name, int value) { glUniform1i(gl::uniform(program_, name), value); };
-  const auto real = [&](const char* name, float value) { glUniform1f(gl::uniform(program_, name), value); };
-  const auto vector = [&](const char* name, const float* value) {
-    glUniform3fv(gl::uniform(program_, name), 1, value);
-  };
-  const struct {
-    const char* name;
-    GLuint texture;
-  } maps[] = {
-      {"shadow_maps", atlas_.texture()},       {"position_material_map", gbuffer_.position_material()},
-      {"surface_map", gbuffer_.surface()},     {"materials", gbuffer_.materials()},
-      {"so_far", sums_[earlier].texture.id()}, {"environment", environment_.id()}};
-  for (int unit = 0; unit < 6; ++unit) {
-    gl::bind_texture(unit, maps[unit].texture);
-    integer(maps[unit].name, unit);
-  }
-  integer("light_count", static_cast<int>(rows.size()));
-  integer("tiles", atlas_.tiles());
-  real("map_size", static_cast<float>(atlas_.map_size()));
-  integer("has_shadows", atlas_.empty() ? 0 : 1);
-  real("weight", 1 / static_cast<float>(options_.samples));
-  integer("first_block", first_block ? 1 : 0);
-  integer("start_sum", start_sum ? 1 : 0);
-  integer("show_environment", show_environment_ ? 1 : 0);
-  real("environment_turns", static_cast<float>(std::remainder(environment_turn_rad / (2 * kPi), 1.0)));
-  vector("ambient", lights.ambient.data());
-  vector("eye", view.eye.data());
-  vector("view_forward", view.forward.data());
-  vector("view_right", view.right.data());
-  vector("view_up", view.up.data());
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_FALSE);
   glBindVertexArray(no_vertices_.id());
+  const float weight = 1 / static_cast<float>(options_.samples);
+
+  const Uniforms surfaces(surfaces_);
+  surfaces.set_texture("so_far", 0, so_far);
+  surfaces.set_texture("position_material_map", 1, gbuffer_.position_material());
+  surfaces.set_texture("surface_map", 2, gbuffer_.surface());
+  surfaces.set_texture("materials", 3, gbuffer_.materials());
+  surfaces.set_texture("shadow_maps", 4, atlas_.texture());
+  surfaces.set("light_count", light_count);
+  surfaces.set("tiles", static_cast<float>(atlas_.tiles()));
+  surfaces.set("objects_centre", casters_.objects.centre.data());
+  surfaces.set("scene_centre", casters_.scene.centre.data());
+  surfaces.set("map_size", static_cast<float>(atlas_.map_size()));
+  surfaces.set("weight", weight);
+  surfaces.set("coverage", first_block ? 1.0f : 0.0f);
+  surfaces.set("start_sum", start_sum ? 1 : 0);
+  surfaces.set("ambient", lights.ambient.data());
+  surfaces.set("eye", view.eye.data());
+  glDepthFunc(GL_GREATER);  // the draw is at depth 1, where nothing is
   glDrawArrays(GL_TRIANGLES, 0, 3);
+
+  const Uniforms background(background_);
+  background.set_texture("so_far", 0, so_far);
+  background.set_texture("environment", 1, environment_.id());
+  background.set("weight", weight);
+  background.set("start_sum", start_sum ? 1 : 0);
+  background.set("show_environment", show_environment_ && first_block ? 1 : 0);
+  background.set("environment_turns",
+                 static_cast<float>(std::remainder(environment_turn_rad / (2 * kPi), 1.0)));
+  background.set("view_forward", view.forward.data());
+  background.set("view_right", view.right.data());
+  background.set("view_up", view.up.data());
+  glDepthFunc(GL_EQUAL);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDepthFunc(GL_LESS);
 }
 
 void Renderer::tone_map(ToneMap operation, double dt_s) {

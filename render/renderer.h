@@ -19,9 +19,10 @@ namespace lightwell::render {
 struct RendererOptions {
   int width = 320;
   int height = 240;
-  int samples = 1;              // a pixel: 1 at its centre, more spread over it, averaged
-  int shadow_size = 256;        // texels a side of a light's map
-  bool measure_passes = false;  // waits for each pass, to time it
+  int samples = 1;               // a pixel: 1 at its centre, more spread over it, averaged
+  int shadow_size = 256;         // texels a side of a light's map
+  bool simplify_casters = true;  // shadows of simpler meshes, a quarter of a map's texel off at most
+  bool measure_passes = false;   // waits for each pass, to time it
 };
 
 struct PassTimes {
@@ -63,8 +64,9 @@ class Renderer {
     gl::Texture texture;
     gl::Framebuffer framebuffer;
   };
-  void shade(const View& view, std::span<const LightRow> rows, const LightSet& lights, bool first_block,
-             bool start_sum, double environment_turn_rad);
+  // Adds the block of lights and, with the first of a sample, what does not depend on them.
+  void shade(const View& view, int light_count, const LightSet& lights, bool first_block, bool start_sum,
+             double environment_turn_rad);
   // Adds the time since start to a pass, where passes are measured.
   double lap(double start, double& pass) const;
 
@@ -73,7 +75,8 @@ class Renderer {
   ShadowAtlas atlas_;
   ToneMapper tone_mapper_;
   Casters casters_;
-  gl::Program program_;
+  gl::Program surfaces_;
+  gl::Program background_;
   gl::Buffer light_block_;
   gl::VertexArray no_vertices_;
   gl::Texture environment_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace lightwell::render {
 
@@ -22,7 +23,6 @@ Result<ShadowAtlas> ShadowAtlas::create(const Casters& casters, int map_size) {
   auto program = gl::make_program("shadow_vertex", "empty_fragment");
   if (!program) return program.error();
   atlas.program_ = std::move(program).value();
-  glUniformBlockBinding(atlas.program_.id(), glGetUniformBlockIndex(atlas.program_.id(), "Lights"), 0);
   atlas.vertex_array_ = gl::make_vertex_array();
   glBindVertexArray(atlas.vertex_array_.id());
   atlas.positions_ =
@@ -31,6 +31,10 @@ Result<ShadowAtlas> ShadowAtlas::create(const Casters& casters, int map_size) {
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vec3f), nullptr);
   atlas.indices_ = gl::make_buffer(GL_ELEMENT_ARRAY_BUFFER, casters.indices.data(),
                                    casters.indices.size() * sizeof(casters.indices[0]));
+  for (const GLuint row : {1u, 2u, 3u}) {
+    glEnableVertexAttribArray(row);
+    glVertexAttribDivisor(row, 1);
+  }
   glBindVertexArray(0);
   if (Status s = atlas.resize(1); !s) return s.error();
   return atlas;
@@ -55,7 +59,7 @@ Status ShadowAtlas::resize(int tiles) {
   return {};
 }
 
-Status ShadowAtlas::draw(std::span<const LightRow> rows) {
+Status ShadowAtlas::draw(std::span<const LightRow> rows, GLuint buffer) {
   const auto count = static_cast<GLsizei>(rows.size());
   const int tiles = std::max(1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count)))));
   if (Status s = resize(tiles); !s) return s;
@@ -66,9 +70,18 @@ Status ShadowAtlas::draw(std::span<const LightRow> rows) {
   glClear(GL_DEPTH_BUFFER_BIT);
   glUseProgram(program_.id());
   glUniform1i(gl::uniform(program_, "tiles"), tiles);
-  const GLint support_light = gl::uniform(program_, "support_light");
-  glUniform1i(support_light, -1);
+  const GLint supports = gl::uniform(program_, "supports");
+  glUniform1i(supports, 0);
   glBindVertexArray(vertex_array_.id());
+  glBindBuffer(GL_ARRAY_BUFFER, buffer);
+  // Instances begin at this light.
+  const auto begin_at = [](std::size_t light) {
+    const std::size_t offsets[] = {offsetof(LightRow, u), offsetof(LightRow, v), offsetof(LightRow, w)};
+    for (GLuint row = 0; row < 3; ++row)
+      glVertexAttribPointer(row + 1, 4, GL_FLOAT, GL_FALSE, sizeof(LightRow),
+                            reinterpret_cast<const void*>(light * sizeof(LightRow) + offsets[row]));
+  };
+  begin_at(0);
   const auto run = [&](GLsizei first_index, GLsizei indices, GLsizei instances) {
     if (indices == 0 || instances == 0) return;
     const auto offset = static_cast<std::uintptr_t>(first_index) * sizeof(std::uint32_t);
@@ -85,7 +98,8 @@ Status ShadowAtlas::draw(std::span<const LightRow> rows) {
   for (int i = 0; i < count && support_count_ > 0; ++i) {
     if (rows[static_cast<std::size_t>(i)].extent_m < 0) continue;
     glViewport(i % tiles * map_size_, i / tiles * map_size_, map_size_, map_size_);
-    glUniform1i(support_light, i);
+    glUniform1i(supports, 1);
+    begin_at(static_cast<std::size_t>(i));
     run(closed_count_ + open_count_, support_count_, 1);
   }
   return {};

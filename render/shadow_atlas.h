@@ -25,8 +25,8 @@ class ShadowAtlas {
   [[nodiscard]] GLuint texture() const { return texture_.id(); }
   [[nodiscard]] bool empty() const { return closed_count_ + open_count_ + support_count_ == 0; }
 
-  // Draws the maps of rows, at most capacity(), which stand in uniform block binding 0.
-  Status draw(std::span<const LightRow> rows);
+  // Draws the maps of rows, at most capacity(), which are the first of buffer.
+  Status draw(std::span<const LightRow> rows, GLuint buffer);
 
  private:
   Status resize(int tiles);

@@ -1,27 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-// Adds one block of lights to the picture: one loop, one shadow look-up a light.
-in vec2 ndc;
+// Adds one block of lights to the pixels that show a surface (the depth test leaves the others out): one loop, one
+// shadow look-up a light. What a loop reads of a uniform, software drivers gather pixel by pixel: more than half of the
+// loop's work. So it reads seven numbers a light, derives the map's axes, and takes everything else from before it.
 struct Light { vec4 u, v, w, illuminance; };
 layout(std140) uniform Lights { Light lights[256]; };
 uniform int light_count;
-uniform int tiles;
+uniform float tiles;  // a side of the atlas
 uniform float map_size;
-uniform int has_shadows;
+uniform vec3 objects_centre, scene_centre;  // of the spheres that maps fit, without supports in the way and with
 uniform sampler2DShadow shadow_maps;
 uniform sampler2D position_material_map;
 uniform usampler2D surface_map;
 uniform sampler2D materials;
-uniform sampler2D so_far;        // the sum of earlier blocks and samples
-uniform float weight;            // of this sample
-uniform int first_block;         // ambient, background and coverage count once a sample
-uniform int start_sum;           // so_far is not there yet
+uniform sampler2D so_far;   // the sum of earlier lights and samples
+uniform float weight;       // of this sample
+uniform float coverage;     // once a sample, as ambient light
+uniform int start_sum;      // so_far is not there yet
 uniform vec3 eye;
 uniform vec3 ambient;
-uniform int show_environment;
-uniform sampler2D environment;   // latitude–longitude, row 0 is the zenith
-uniform float environment_turns; // turn about +Y, in turns
-uniform vec3 view_forward, view_right, view_up;
 out vec4 radiance;
 
 const float kPi = 3.14159265358979;
@@ -37,24 +34,6 @@ vec3 from_octahedral(vec2 p) {
   vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
   if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
   return normalize(n);
-}
-
-// Bilinear by hand: float textures need not filter.
-vec3 environment_radiance(vec3 d) {
-  ivec2 size = textureSize(environment, 0);
-  float azimuth = atan(d.x, d.z) / (2.0 * kPi) - environment_turns;
-  vec2 place = vec2(fract(0.5 - azimuth), acos(clamp(d.y, -1.0, 1.0)) / kPi) * vec2(size) - 0.5;
-  ivec2 corner = ivec2(floor(place));
-  vec2 f = place - vec2(corner);
-  vec3 sum = vec3(0.0);
-  for (int k = 0; k < 4; ++k) {
-    ivec2 step = ivec2(k & 1, k >> 1);
-    ivec2 at = corner + step;
-    at = ivec2((at.x + size.x) % size.x, clamp(at.y, 0, size.y - 1));
-    vec2 share = mix(1.0 - f, f, vec2(step));
-    sum += texelFetch(environment, at, 0).rgb * share.x * share.y;
-  }
-  return sum;
 }
 
 Surface unpack(vec4 position_material, uvec4 packed_surface) {
@@ -107,51 +86,60 @@ vec3 reflectance(Surface s, vec3 to_light, float cosine) {
 #endif
 }
 
+struct Maps {
+  vec3 from_objects, from_scene;  // to the surface
+  float bias;                     // in texels; 0 where the surface does not stand in the maps
+  bool on_support;
+  float across, margin, tile;
+};
+
 // 1 lit, 0 in shadow, between them the hardware's 2×2 comparison. Outside its map everything is lit.
-float visibility(int i, vec2 tile, vec3 position, Surface s, vec3 to_light, float cosine, float in_shadow_map) {
-  float extent = abs(lights[i].illuminance.w);
-  // The side of a support that a light behind it sees: nothing of the scene is on that side.
-  if (in_shadow_map == 0.5 && lights[i].illuminance.w > 0.0) return 1.0;
-  bool stands_in_map = in_shadow_map == 1.0;
+// extent: LightRow's; the axes are make_light_rows's.
+float visibility(Maps maps, vec2 tile, vec3 normal, vec3 to_light, float extent, float cosine) {
+  float size = abs(extent);
   // A 2×2 comparison reaches √2 texels away, where a plane at angle θ to the light is nearer by √2·texel·tan θ. Moving
   // the point by √2·texel·sin θ along its normal clears exactly that; the rest is for depth's 16 bits and curvature.
-  float texel = extent / (map_size - 4.0);
-  float bias = stands_in_map ? texel * (1.4142136 * sqrt(max(1.0 - cosine * cosine, 0.0)) + 0.1) : 0.0;
-  vec4 p = vec4(position + s.normal * bias, 1.0);
-  vec3 place = vec3(dot(lights[i].u, p), dot(lights[i].v, p), dot(lights[i].w, p));
-  vec2 inside = clamp(place.xy, 0.5 / map_size, 1.0 - 0.5 / map_size);
-  float lit = textureLod(shadow_maps, vec3((tile + inside) / float(tiles), min(place.z, 1.0)), 0.0);
-  return inside == place.xy ? lit : 1.0;
-}
-
-vec3 reflected(vec4 position_material, uvec4 packed_surface) {
-  Surface s = unpack(position_material, packed_surface);
-  float in_shadow_map = unpackHalf2x16(packed_surface.w).y;
-  vec3 sum = vec3(0.0);
-  vec2 tile = vec2(-1.0, 0.0);
-  for (int i = 0; i < light_count; ++i) {
-    tile = tile.x + 1.0 == float(tiles) ? vec2(0.0, tile.y + 1.0) : vec2(tile.x + 1.0, tile.y);
-    vec3 to_light = lights[i].w.xyz * -abs(lights[i].illuminance.w);
-    float cosine = dot(s.normal, to_light);
-    if (cosine <= 0.0) continue;
-    vec3 light = lights[i].illuminance.rgb * cosine;
-    if (has_shadows != 0) light *= visibility(i, tile, position_material.xyz, s, to_light, cosine, in_shadow_map);
-    sum += light * reflectance(s, to_light, cosine);
-  }
-  // Ambient light reaches every surface: albedo times radiance. A lobe's albedo is taken at normal incidence.
-  if (first_block != 0) sum += (s.diffuse + s.specular) * ambient;
-  return sum;
+  float bias = maps.bias * size * (1.4142136 * sqrt(max(1.0 - cosine * cosine, 0.0)) + 0.1);
+  vec3 p = (extent > 0.0 ? maps.from_scene : maps.from_objects) + normal * bias;
+  vec3 u = abs(to_light.y) < 0.9 ? vec3(to_light.z, 0.0, -to_light.x) : vec3(0.0, -to_light.z, to_light.y);
+  u *= inversesqrt(dot(u, u));
+  vec2 place = vec2(dot(u, p), dot(cross(to_light, u), p)) * (maps.across / size) + 0.5;
+  vec2 inside = clamp(place, maps.margin, 1.0 - maps.margin);
+  float depth = min(0.5 - dot(to_light, p) / size, 1.0);
+  float lit = textureLod(shadow_maps, vec3((tile + inside) * maps.tile, depth), 0.0);
+  // The side of a support that a light behind it sees: nothing of the scene is on that side.
+  return inside == place && !(maps.on_support && extent > 0.0) ? lit : 1.0;
 }
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec4 position_material = texelFetch(position_material_map, at, 0);
-  vec4 now = vec4(0.0);
-  if (position_material.w > 0.0) {
-    now = vec4(reflected(position_material, texelFetch(surface_map, at, 0)), first_block != 0 ? 1.0 : 0.0);
-  } else if (first_block != 0 && show_environment != 0) {
-    now = vec4(environment_radiance(normalize(view_forward + view_right * ndc.x + view_up * ndc.y)), 1.0);
+  uvec4 packed_surface = texelFetch(surface_map, at, 0);
+  Surface s = unpack(position_material, packed_surface);
+  float in_shadow_map = unpackHalf2x16(packed_surface.w).y;
+  Maps maps;
+  maps.from_objects = position_material.xyz - objects_centre;
+  maps.from_scene = position_material.xyz - scene_centre;
+  maps.bias = in_shadow_map == 1.0 ? 1.0 / (map_size - 4.0) : 0.0;
+  maps.on_support = in_shadow_map == 0.5;
+  maps.across = MAP_REACH * (1.0 - 4.0 / map_size);
+  maps.margin = 0.5 / map_size;
+  maps.tile = 1.0 / tiles;
+  int count = light_count;
+  float last_tile = tiles - 1.0;
+  vec2 tile = vec2(0.0);
+  // Ambient light reaches every surface: albedo times radiance. A lobe's albedo is taken at normal incidence.
+  vec3 sum = (s.diffuse + s.specular) * ambient * coverage;
+  for (int i = 0; i < count; ++i) {
+    vec4 light = lights[i].illuminance;
+    vec3 to_light = lights[i].w.xyz * -abs(light.w);
+    float cosine = max(dot(s.normal, to_light), 0.0);
+#if HAS_SHADOWS
+    light.rgb *= visibility(maps, tile, s.normal, to_light, light.w, cosine);
+#endif
+    sum += light.rgb * cosine * reflectance(s, to_light, cosine);
+    tile = tile.x == last_tile ? vec2(0.0, tile.y + 1.0) : vec2(tile.x + 1.0, tile.y);
   }
-  radiance = now * weight;
+  radiance = vec4(sum, coverage) * weight;
   if (start_sum == 0) radiance += texelFetch(so_far, at, 0);
 }

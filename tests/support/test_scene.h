@@ -94,6 +94,48 @@ inline void add_sphere(Scene& scene, const Vec3f& centre, float radius, const Ma
   add_mesh(scene, positions, normals, triangles, material, casts);
 }
 
+// Closed bar of 16 sides along an axis (0 x, 1 y, 2 z), from its lower end on.
+inline void add_bar(Scene& scene, const Vec3f& from, int axis, float length, float radius,
+                    const Material& material) {
+  constexpr std::uint32_t kSides = 16;
+  constexpr std::uint32_t kRings = 5;
+  const Vec3f along = Vec3f::Unit(axis);
+  const Vec3f u = Vec3f::Unit((axis + 1) % 3);
+  const Vec3f v = Vec3f::Unit((axis + 2) % 3);
+  std::vector<Vec3f> positions;
+  std::vector<std::uint32_t> triangles;
+  for (std::uint32_t r = 0; r < kRings; ++r)
+    for (std::uint32_t s = 0; s < kSides; ++s) {
+      const auto angle = static_cast<float>(2 * kPi * s / kSides);
+      positions.push_back(from + along * (length * static_cast<float>(r) / (kRings - 1)) +
+                          radius * (std::cos(angle) * u + std::sin(angle) * v));
+    }
+  positions.push_back(from);
+  positions.push_back(from + length * along);
+  const std::uint32_t bottom = kRings * kSides;
+  for (std::uint32_t s = 0; s < kSides; ++s) {
+    const std::uint32_t next = (s + 1) % kSides;
+    for (std::uint32_t r = 0; r + 1 < kRings; ++r) {
+      const std::uint32_t a = r * kSides + s;
+      const std::uint32_t b = r * kSides + next;
+      triangles.insert(triangles.end(), {a, b, b + kSides, a, b + kSides, a + kSides});
+    }
+    const std::uint32_t top = (kRings - 1) * kSides;
+    triangles.insert(triangles.end(), {bottom, next, s, bottom + 1, top + s, top + next});
+  }
+  add_mesh(scene, positions, {}, triangles, material);
+}
+
+// Five bars along x and five along y, crossing without touching. Returns how many.
+inline std::size_t add_lattice(Scene& scene, float radius) {
+  for (int i = 0; i < 5; ++i) {
+    const float at = 0.2f + 0.2f * static_cast<float>(i);
+    add_bar(scene, {-0.6f, at, 0}, 0, 1.2f, radius, lambertian(Rgb::Constant(0.5f)));
+    add_bar(scene, {at - 0.6f, 0.1f, 0.1f}, 1, 1.2f, radius, lambertian(Rgb::Constant(0.5f)));
+  }
+  return 10;
+}
+
 inline SceneCamera camera_at(const Vec3f& eye, const Vec3f& target, float yfov_rad = 0.6f) {
   SceneCamera camera;
   camera.yfov_rad = yfov_rad;

@@ -23,12 +23,14 @@ class Rendering : public ::testing::Test {
 
   static render::RadiancePicture picture(const Scene& scene, const LightSet& lights,
                                          const SceneCamera& camera, int width = 32, int height = 24,
-                                         int samples = 1, int shadow_size = 256) {
+                                         int samples = 1, int shadow_size = 256,
+                                         bool simplify_casters = true) {
     render::RendererOptions options;
     options.width = width;
     options.height = height;
     options.samples = samples;
     options.shadow_size = shadow_size;
+    options.simplify_casters = simplify_casters;
     auto renderer = render::Renderer::create(scene, options);
     EXPECT_TRUE(renderer.ok()) << renderer.error().message;
     const Status status = renderer->render(lights, camera);

@@ -175,6 +175,33 @@ TEST_F(Shadows, AGroundThatCastsBlocksLightFromBelowAndKeepsTheMapsOfOtherLights
   EXPECT_LT(casters.objects.radius, 0.51f);
 }
 
+TEST_F(Shadows, OfSimplifiedCastersAreThoseOfTheFullMeshes) {
+  Scene scene;
+  add_ground(scene, lambertian(kWhite));
+  add_sphere(scene, {-1, 0.5f, 0}, 0.5f, lambertian(kWhite));
+  add_lattice(scene, 0.012f);
+  std::vector<std::pair<Vec3f, Rgb>> lights;
+  for (int i = 0; i < 9; ++i)
+    lights.emplace_back(Vec3f(static_cast<float>(i - 4) * 0.4f, 1, 0.8f - 0.3f * static_cast<float>(i % 4)),
+                        kLux);
+  const SceneCamera camera = camera_at({0, 4, 4}, {0, 0.3f, 0}, 0.7f);
+  const auto full = picture(scene, light_set(lights), camera, kWidth, kHeight, 1, 256, false);
+  const auto fewer = picture(scene, light_set(lights), camera, kWidth, kHeight, 1, 256, true);
+  double difference = 0;
+  double total = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      EXPECT_EQ(alpha(fewer, x, y), alpha(full, x, y));  // what is seen is not simplified
+      difference += static_cast<double>((rgb(fewer, x, y) - rgb(full, x, y)).square().sum());
+      total += static_cast<double>(rgb(full, x, y).square().sum());
+    }
+  const double relative_rmse = std::sqrt(difference / total);
+  // Edges of shadows move by at most a quarter of a texel of a light's map, so a pixel there changes by at most
+  // half of one light of nine; a tenth of the pixels are at an edge: 1/18 · √0.1.
+  EXPECT_LT(relative_rmse, 0.0176);
+  EXPECT_GT(relative_rmse, 0);  // simplified indeed
+}
+
 TEST_F(Shadows, LightsBeyondOneAtlasOrBlockHaveTheirShadowsToo) {
   // 600 equal lights in one direction are one light 600 times as strong.
   Scene scene;
