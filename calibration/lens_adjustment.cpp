@@ -53,68 +53,65 @@ Eigen::Matrix3d left_jacobian(const Vec3d& rotation) {
          (angle - std::sin(angle)) / (angle2 * angle) * w * w;
 }
 
-// The parts of a view that all its points share, made once an evaluation.
-class ViewFrame : public ceres::EvaluationCallback {
- public:
-  ViewFrame(const Lens& lens, const LensNumbers& lens_numbers, const std::vector<PoseNumbers>& poses)
-      : lens_(lens),
-        lens_numbers_(lens_numbers),
-        poses_(poses),
-        rotations_(poses.size()),
-        jacobians_(poses.size()) {}
-
-  void PrepareForEvaluation(bool, bool) override {
-    set_numbers(lens_, lens_numbers_.data());
-    dlens_dnumbers_ = dlens_dnumbers(lens_);
-    for (std::size_t i = 0; i < poses_.size(); ++i) {
-      const Vec3d rotation(poses_[i].data());
-      rotations_[i] = TargetPose{rotation, Vec3d::Zero()}.camera_from_target();
-      jacobians_[i] = left_jacobian(rotation);
-    }
-  }
-  [[nodiscard]] const Lens& lens() const { return lens_; }
-  [[nodiscard]] const Eigen::Matrix<double, 8, 8>& by_numbers() const { return dlens_dnumbers_; }
-  [[nodiscard]] const Eigen::Matrix3d& rotation(std::size_t view) const { return rotations_[view]; }
-  [[nodiscard]] const Eigen::Matrix3d& jacobian(std::size_t view) const { return jacobians_[view]; }
-
- private:
-  Lens lens_;
-  const LensNumbers& lens_numbers_;
-  const std::vector<PoseNumbers>& poses_;
-  Eigen::Matrix<double, 8, 8> dlens_dnumbers_;
-  std::vector<Eigen::Matrix3d> rotations_;
-  std::vector<Eigen::Matrix3d> jacobians_;
+// Cauchy's loss as a factor on the error: |factor · error|² = scale² ln(1 + |error|² / scale²).
+struct CauchyFactor {
+  double factor = 1;
+  double slope = 0;  // by |error|²
 };
+CauchyFactor cauchy_factor(double scale, double error2) {
+  const double x = error2 / (scale * scale);
+  if (x < 1e-8) return {};  // infinite scale: least squares
+  const double log = std::log1p(x);
+  const double factor = std::sqrt(log / x);
+  return {factor, (x / (1 + x) - log) / (2 * x * x * factor * scale * scale)};
+}
 
-// Projection less pixel of one point.
-class PointCost : public ceres::SizedCostFunction<2, 8, 6> {
+// Projection less pixel of all points of one view.
+class ViewCost : public ceres::CostFunction {
  public:
-  PointCost(const ViewFrame& frame, std::size_t view, const Correspondence& point)
-      : frame_(frame), view_(view), point_(point) {}
+  ViewCost(const Lens& lens, const std::vector<Correspondence>& points, double cauchy_px)
+      : lens_(lens), points_(points), cauchy_px_(cauchy_px) {
+    set_num_residuals(static_cast<int>(2 * points.size()));
+    *mutable_parameter_block_sizes() = {8, 6};
+  }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const Vec3d turned = frame_.rotation(view_) * point_.target_mm;
-    const Vec3d direction = turned + Vec3d(parameters[1] + 3);
-    if (!jacobians) {
-      Eigen::Map<Vec2d>{residuals} = frame_.lens().project(direction) - point_.pixel;
-      return true;
+    Lens lens = lens_;
+    set_numbers(lens, parameters[0]);
+    const Eigen::Matrix<double, 8, 8> by_numbers = dlens_dnumbers(lens);
+    const TargetPose pose{Vec3d(parameters[1]), Vec3d(parameters[1] + 3)};
+    const Eigen::Matrix3d rotation = pose.camera_from_target();
+    const Eigen::Matrix3d turn = left_jacobian(pose.rotation);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Vec3d turned = rotation * points_[i].target_mm;
+      const Vec3d direction = turned + pose.translation_mm;
+      if (!jacobians) {
+        const Vec2d error = lens.project(direction) - points_[i].pixel;
+        Eigen::Map<Vec2d>{residuals + 2 * i} = cauchy_factor(cauchy_px_, error.squaredNorm()).factor * error;
+        continue;
+      }
+      const LensJacobian j = project_with_jacobian(lens, direction);
+      const Vec2d error = j.pixel - points_[i].pixel;
+      const CauchyFactor loss = cauchy_factor(cauchy_px_, error.squaredNorm());
+      Eigen::Map<Vec2d>{residuals + 2 * i} = loss.factor * error;
+      const Eigen::Matrix2d weighted =
+          loss.factor * Eigen::Matrix2d::Identity() + 2 * loss.slope * error * error.transpose();
+      if (jacobians[0])
+        Eigen::Map<Eigen::Matrix<double, 2, 8, Eigen::RowMajor>>{jacobians[0] + 16 * i} =
+            weighted * j.dpixel_dlens * by_numbers;
+      if (jacobians[1]) {
+        Eigen::Matrix<double, 2, 6> by_pose;
+        by_pose << -j.dpixel_ddirection * cross_matrix(turned) * turn, j.dpixel_ddirection;
+        Eigen::Map<Eigen::Matrix<double, 2, 6, Eigen::RowMajor>>{jacobians[1] + 12 * i} = weighted * by_pose;
+      }
     }
-    const LensJacobian j = project_with_jacobian(frame_.lens(), direction);
-    Eigen::Map<Vec2d>{residuals} = j.pixel - point_.pixel;
-    if (jacobians[0])
-      Eigen::Map<Eigen::Matrix<double, 2, 8, Eigen::RowMajor>>{jacobians[0]} =
-          j.dpixel_dlens * frame_.by_numbers();
-    if (jacobians[1])
-      Eigen::Map<Eigen::Matrix<double, 2, 6, Eigen::RowMajor>>{jacobians[1]}
-          << -j.dpixel_ddirection * cross_matrix(turned) * frame_.jacobian(view_),
-          j.dpixel_ddirection;
     return true;
   }
 
  private:
-  const ViewFrame& frame_;
-  std::size_t view_;
-  const Correspondence& point_;
+  const Lens& lens_;  // what is not solved for
+  const std::vector<Correspondence>& points_;
+  double cauchy_px_;
 };
 
 // A wall where θd stops growing: nothing above the least slope, steep below it. At one angle.
@@ -180,20 +177,14 @@ double adjust(Lens& lens, std::vector<PosedView>& views, const AdjustmentOptions
     Eigen::Map<Vec3d>{pose.data() + 3} = view.pose.translation_mm;
     poses.push_back(pose);
   }
-  ViewFrame frame(lens, numbers, poses);
-  ceres::Problem::Options ownership;
-  ownership.evaluation_callback = &frame;
-  ceres::Problem problem(ownership);
-  const auto loss = [&]() -> ceres::LossFunction* {
-    return std::isinf(options.cauchy_px) ? nullptr : new ceres::CauchyLoss(options.cauchy_px);
-  };
+  ceres::Problem problem;
   problem.AddParameterBlock(numbers.data(), 8);
   if (const std::vector<int> constant = held(options.freedom); !constant.empty())
     problem.SetManifold(numbers.data(), new ceres::SubsetManifold(8, constant));
   problem.SetParameterLowerBound(numbers.data(), 0, 1e-3);
   for (std::size_t i = 0; i < views.size(); ++i)
-    for (const auto& point : views[i].points)
-      problem.AddResidualBlock(new PointCost(frame, i, point), loss(), numbers.data(), poses[i].data());
+    problem.AddResidualBlock(new ViewCost(lens, views[i].points, options.cauchy_px), nullptr, numbers.data(),
+                             poses[i].data());
   const double field = largest_theta_rad(views);
   constexpr int kWalls = 48;
   for (int i = 1; i <= kWalls && options.freedom.coefficients > 0; ++i)
@@ -204,7 +195,7 @@ double adjust(Lens& lens, std::vector<PosedView>& views, const AdjustmentOptions
   for (PoseNumbers& pose : poses) solver.linear_solver_ordering->AddElementToGroup(pose.data(), 0);
   solver.linear_solver_ordering->AddElementToGroup(numbers.data(), 1);
   solver.max_num_iterations = options.iterations;
-  solver.function_tolerance = 1e-10;
+  solver.function_tolerance = options.tolerance;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);

@@ -30,6 +30,7 @@ struct AdjustmentOptions {
   // Cauchy's loss of this scale on a point's error; infinity: least squares.
   double cauchy_px = std::numeric_limits<double>::infinity();
   int iterations = 50;
+  double tolerance = 1e-10;  // smallest relative change of the sum that is worth another iteration
 };
 
 // Bundle adjustment: the lens and all poses that make Σ loss(|projection − pixel|²) smallest, with θd kept

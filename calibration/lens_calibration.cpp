@@ -104,6 +104,8 @@ Solution best_start(const TargetViews& target_views, const std::vector<Judged>& 
     robust_adjust(s.lens, s.judged, {1, false, true}, 8);
     s.noise_px = robust_adjust(s.lens, s.judged, {2, false, true}, 12);
     if (s.noise_px < best.noise_px) best = std::move(s);
+    constexpr double kNeedsNoRival = 0.5;  // pixels: a detector's own noise
+    if (best.noise_px < kNeedsNoRival) break;
   }
   return best;
 }

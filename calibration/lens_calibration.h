@@ -36,8 +36,8 @@ struct LensCalibration {
 
 // Kannala–Brandt lens from views of a target, without an initial guess.
 // Points further than 5 robust standard deviations off are left out, views with half of their points so far off
-// too; both come back when the lens explains them. Coefficients: the most whose held-out error (cross-validation
-// by views) is within 1 % of the best; aspect: free where the corrected AIC asks for it.
+// too; both come back when the lens explains them. Coefficients: dropped from the highest while the held-out
+// error (cross-validation by views) falls by more than 1 %; aspect: free where the corrected AIC asks for it.
 // bad_input names the view or the reason: fewer than 3 usable views, all views parallel, all points in the middle,
 // points that fit no lens.
 Result<LensCalibration> calibrate_lens(const TargetViews& target_views);

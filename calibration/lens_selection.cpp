@@ -3,7 +3,6 @@
 #include "calibration/lens_selection.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -44,7 +43,7 @@ double held_out(const Lens& lens, const std::vector<PosedView>& views, const Len
     std::vector<PosedView> fitted, kept;
     for (std::size_t i = 0; i < views.size(); ++i) (i % parts == part ? kept : fitted).push_back(views[i]);
     Lens l = lens;
-    if (!(adjust(l, fitted, {freedom, kNone, 20}) >= 0)) return kNone;
+    if (!(adjust(l, fitted, {freedom, kNone, 20, 1e-7}) >= 0)) return kNone;
     for (const PosedView& view : kept) {
       const TargetPose pose = refined_pose(l, view.pose, view.points, kNone);
       for (const double e : errors_px(l, pose, view.points)) sum += e * e;
@@ -58,17 +57,20 @@ double held_out(const Lens& lens, const std::vector<PosedView>& views, const Len
 LensSelection select_freedom(const Lens& lens, const std::vector<PosedView>& views) {
   LensFreedom freedom;
   freedom.aspect = aspect_is_free(lens, views);
-  std::array<double, 5> error{};
-  for (int n = 1; n <= 4; ++n) {
-    freedom.coefficients = n;
-    error[static_cast<std::size_t>(n)] = held_out(lens, views, freedom);
-  }
   constexpr double kAsGood = 1.01;
-  const double best = *std::min_element(error.begin() + 1, error.end());
   freedom.coefficients = 4;
-  while (freedom.coefficients > 1 && error[static_cast<std::size_t>(freedom.coefficients)] > kAsGood * best)
-    --freedom.coefficients;
-  return {freedom, error[static_cast<std::size_t>(freedom.coefficients)]};
+  double error = held_out(lens, views, freedom);
+  // Down as long as fewer are clearly better; an infinite error, of views that do not determine the lens, is no
+  // better than any.
+  while (freedom.coefficients > 1) {
+    LensFreedom fewer = freedom;
+    --fewer.coefficients;
+    const double without = held_out(lens, views, fewer);
+    if (!(error > kAsGood * without)) break;
+    freedom = fewer;
+    error = without;
+  }
+  return {freedom, error};
 }
 
 }  // namespace lightwell

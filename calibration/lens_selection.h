@@ -15,7 +15,8 @@ struct LensSelection {
 };
 
 // Aspect by the corrected Akaike criterion (Hurvich and Tsai 1989). Coefficients by cross-validation in at most
-// five parts by views: the most whose held-out error is within 1 % of the best. Not the fewest: a coefficient
+// five parts by views: dropped from the highest as long as the held-out error falls by more than
+// 1 %. Not the fewest: a coefficient
 // wrongly held at 0 biases the others by more than their standard deviation, one wrongly freed does not.
 // lens, views: solved with everything free.
 LensSelection select_freedom(const Lens& lens, const std::vector<PosedView>& views);

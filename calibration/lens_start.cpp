@@ -101,41 +101,46 @@ std::optional<Vec2d> epipole(const Eigen::Matrix3d& squares, const std::array<in
 
 // How far a target seen through the lens is from a target: the mean over the views of the median error in
 // radians, each error cut at `cut` so that a view that fits nowhere does not decide.
-double misfit(const Lens& lens, const std::vector<const TargetView*>& views) {
+double misfit(const Lens& lens, const std::vector<TargetView>& views) {
   constexpr double kCut = 0.2;
   double sum = 0;
-  for (const TargetView* view : views) {
-    const auto pose = pose_from_rays(lens, view->points);
+  for (const TargetView& view : views) {
+    const auto pose = pose_from_rays(lens, view.points);
     double error = kCut;
     if (pose) {
       const Eigen::Matrix3d rotation = pose->camera_from_target();
+      std::vector<Vec3d> rays;
       std::vector<double> angles;
-      for (const auto& p : view->points) {
-        const Vec3d seen = (rotation * p.target_mm + pose->translation_mm).normalized();
-        const Vec3d ray = lens.unproject(p.pixel);
-        angles.push_back(std::atan2(seen.cross(ray).norm(), seen.dot(ray)));
+      Vec3d mean = Vec3d::Zero();
+      for (const auto& p : view.points) {
+        const Vec3d seen = rotation * p.target_mm + pose->translation_mm;
+        rays.push_back(lens.unproject(p.pixel));
+        angles.push_back(std::atan2(seen.cross(rays.back()).norm(), seen.dot(rays.back())));
+        mean += rays.back() / static_cast<double>(view.points.size());
       }
       // Against the target's own angular size: far targets look good through any lens.
-      Vec3d mean = Vec3d::Zero();
-      for (const auto& p : view->points)
-        mean += lens.unproject(p.pixel) / static_cast<double>(view->points.size());
-      double size = 0;
-      for (const auto& p : view->points) size = std::max(size, (lens.unproject(p.pixel) - mean).norm());
-      error = std::min(kCut, median(angles) / std::max(size, 1e-6));
+      double size = 1e-6;
+      for (const Vec3d& ray : rays) size = std::max(size, (ray - mean).norm());
+      error = std::min(kCut, median(angles) / size);
     }
     sum += error;
   }
   return sum / static_cast<double>(views.size());
 }
 
-// The views with the most points: enough to rank starts by.
-std::vector<const TargetView*> telling_views(const TargetViews& target_views) {
-  constexpr std::size_t kMost = 12;
-  std::vector<const TargetView*> views;
-  for (const TargetView& view : target_views.views) views.push_back(&view);
+// The views with the most points, and every n-th point of them: enough to rank starts by.
+std::vector<TargetView> telling_views(const TargetViews& target_views) {
+  constexpr std::size_t kMostViews = 10, kMostPoints = 40;
+  std::vector<TargetView> views = target_views.views;
   std::stable_sort(views.begin(), views.end(),
-                   [](auto a, auto b) { return a->points.size() > b->points.size(); });
-  views.resize(std::min(views.size(), kMost));
+                   [](const auto& a, const auto& b) { return a.points.size() > b.points.size(); });
+  views.resize(std::min(views.size(), kMostViews));
+  for (TargetView& view : views) {
+    const std::size_t step = (view.points.size() + kMostPoints - 1) / kMostPoints;
+    std::vector<Correspondence> points;
+    for (std::size_t i = 0; i < view.points.size(); i += step) points.push_back(view.points[i]);
+    view.points = std::move(points);
+  }
   return views;
 }
 
@@ -165,7 +170,7 @@ std::vector<Vec2d> distortion_centers(const TargetViews& target_views) {
 }
 
 std::vector<Lens> lens_starts(const TargetViews& target_views, std::size_t count) {
-  const std::vector<const TargetView*> views = telling_views(target_views);
+  const std::vector<TargetView> views = telling_views(target_views);
   // First terms of tan, 2 tan(θ/2), θ, 2 sin(θ/2), sin θ; tan is kept from running away.
   constexpr double kProjections[] = {0.15, 1.0 / 12, 0, -1.0 / 24, -1.0 / 9};
   constexpr double kFieldDeg[] = {8, 12, 18, 26, 36, 48, 60, 72, 84, 96, 108, 120, 135};
@@ -176,9 +181,9 @@ std::vector<Lens> lens_starts(const TargetViews& target_views, std::size_t count
   std::vector<Ranked> ranked;
   for (const Vec2d& center : distortion_centers(target_views)) {
     double radius = 0;
-    for (const TargetView* view : views) {
+    for (const TargetView& view : views) {
       std::vector<double> distance;
-      for (const auto& p : view->points) distance.push_back((p.pixel - center).norm());
+      for (const auto& p : view.points) distance.push_back((p.pixel - center).norm());
       radius = std::max(radius, median(distance));
     }
     for (const double k1 : kProjections)

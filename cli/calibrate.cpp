@@ -5,12 +5,16 @@
 namespace lightwell::cli {
 
 // `lightwell calibrate …`: one file a subcommand, in the order in which --help lists them.
-Command add_calibrate_response(CLI::App& group);
+Command add_calibrate_lens(CLI::App& calibrate);
+Command add_calibrate_response(CLI::App& calibrate);
 
 Command add_calibrate(CLI::App& app) {
   CLI::App* group = app.add_subcommand("calibrate", "Calibrate a camera's lens and response");
   group->require_subcommand(1);
-  const std::vector<Command> commands = {add_calibrate_response(*group)};
+  const std::vector<Command> commands = {
+      add_calibrate_lens(*group),
+      add_calibrate_response(*group),
+  };
   return {group, [commands] {
             for (const Command& command : commands)
               if (command.app->parsed()) return command.run();

@@ -31,8 +31,8 @@ int run(const EvaluateOptions& options) {
   if (!environment) return fail(environment.error());
   const auto set = read_light_set(options.lights);
   if (!set) return fail(set.error());
-  if (const std::string repaired = environment->repaired(options.environment); !repaired.empty())
-    std::fprintf(stderr, "lightwell: %s\n", repaired.c_str());
+  if (const std::string remark = environment->remark(options.environment); !remark.empty())
+    std::fprintf(stderr, "lightwell: %s\n", remark.c_str());
 
   const auto begin = std::chrono::steady_clock::now();
   const bool hemisphere = set->coverage == Coverage::hemisphere;

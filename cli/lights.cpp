@@ -79,6 +79,7 @@ Result<Plan> plan_of(const LightsOptions& options) {
   if (!(options.rate_hz > 0 && options.rate_hz <= 100000))
     return usage("--rate is " + std::to_string(options.rate_hz) + ", allowed above 0 to 100000 Hz");
   plan.rate_hz = options.rate_hz;
+  if (const Status named = check_output_name(options.out); !named) return named.error();
   const auto temporal = temporal_filter(options, plan.method);
   if (!temporal) return temporal.error();
   plan.temporal = *temporal;
@@ -89,8 +90,8 @@ Result<Plan> plan_of(const LightsOptions& options) {
 Result<PolarMap> read_map(const std::filesystem::path& file, const Plan& plan) {
   const auto environment = read_environment(file);
   if (!environment) return environment.error();
-  if (const std::string repaired = environment->repaired(file); !repaired.empty())
-    std::fprintf(stderr, "lightwell: %s\n", repaired.c_str());
+  if (const std::string remark = environment->remark(file); !remark.empty())
+    std::fprintf(stderr, "lightwell: %s\n", remark.c_str());
   return polar_map_from_lat_long(environment->image, plan.hemisphere, plan.rotate_y_rad);
 }
 

@@ -5,8 +5,9 @@
 
 #include "cli/command.h"
 
-// lightwell COMMAND …: parse, run the chosen command, and turn every failure into one line and an exit code.
-int main(int argc, char** argv) {
+namespace {
+
+int run(int argc, char** argv) {
   CLI::App app{"Lightwell: measure the light on set, relight virtual objects with it", "lightwell"};
   app.require_subcommand(1);
   app.set_version_flag("--version", "lightwell 0.1.0");
@@ -16,11 +17,20 @@ int main(int argc, char** argv) {
   const auto commands = lightwell::cli::add_commands(app);
   try {
     app.parse(argc, argv);
-    for (const auto& command : commands)
-      if (command.app->parsed()) return command.run();
-    return static_cast<int>(lightwell::ErrorKind::usage);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(lightwell::ErrorKind::usage);
+  }
+  for (const auto& command : commands)
+    if (command.app->parsed()) return command.run();
+  return static_cast<int>(lightwell::ErrorKind::usage);
+}
+
+}  // namespace
+
+// lightwell COMMAND …: parse, run the chosen command, and turn every failure into one line and an exit code.
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "lightwell: %s\n", error.what());
     return static_cast<int>(lightwell::ErrorKind::failed);

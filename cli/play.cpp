@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "daemon/configuration.h"
 #include "daemon/daemon.h"
+#include "interface/dds_domain.h"
 
 namespace lightwell::cli {
 namespace {
@@ -65,7 +66,7 @@ Command add_play(CLI::App& app) {
   command->add_option("--calibration", arguments->calibration,
                       "folder to use instead of the take's own calibration");
   command->add_option("--listen", arguments->listen, "ADDRESS:PORT of the page");
-  command->add_option("--domain", arguments->domain, "DDS domain")->check(CLI::Range(0, 230));
+  command->add_option("--domain", arguments->domain, "DDS domain")->check(CLI::Range(0, kMaxDdsDomain));
   command->footer("Example: lightwell play take.mkv --loop --speed 0.5");
   return {command, [arguments] { return run(*arguments); }};
 }

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
+#include "daemon/record/take_name.h"
+#include "interface/atomic_file.h"
 
 namespace lightwell::cli {
 namespace {
@@ -38,6 +40,12 @@ int run(const RecordOptions& options) {
     return fail(usage("--seconds is out of range: above 0, up to 604800 (a week)"));
   if (options.out.filename().empty())
     return fail(usage("--out " + options.out.string() + " is not a file's name"));
+  if (const Status named = check_output_name(options.out); !named) return fail(named.error());
+  if (const std::string name = options.out.filename().string();
+      options.source.empty() && !check_take_name(name))
+    return fail(usage("--out " + options.out.string() +
+                      ": the daemon takes plain names only, such as take.mkv: " + kTakeNameRule +
+                      "; with --source any name will do"));
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
   const auto recorded = options.source.empty() ? record_through_daemon(options, interrupted)

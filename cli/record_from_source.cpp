@@ -99,7 +99,8 @@ Result<Recorded> record_from_source(const RecordOptions& options, const std::ato
     const auto first = first_frame(source, options, interrupted);
     if (!first) return first.error();
     const RecordingHeader header = header_for(first->info(), source, options, std::move(*calibration));
-    if (Status status = recorder.start_at(part.path(), header); !status) return status.error();
+    if (Status status = recorder.start_at(part.path(), header); !status)
+      return part.about_out(status.error());
     recorder.offer(first->info(), first->bytes());
   }
   take_frames(source, recorder, options, interrupted);
@@ -107,12 +108,12 @@ Result<Recorded> record_from_source(const RecordOptions& options, const std::ato
   source.stop();
   const Status closed = recorder.stop();
   const Recorder::Stats stats = recorder.stats();
-  if (stats.frames == 0) return closed ? failed(options, "nothing recorded") : closed.error();
+  if (stats.frames == 0) return closed ? failed(options, "nothing recorded") : part.about_out(closed.error());
   // A take whose disk ran full is readable to its last whole cluster: worth more on set than no take.
   if (Status status = part.keep(); !status) return status.error();
   if (!closed)
-    return failed(options,
-                  "holds " + std::to_string(stats.frames) + " frames only, " + closed.error().message);
+    return failed(options, "holds " + std::to_string(stats.frames) + " frames only, " +
+                               part.about_out(closed.error()).message);
   return Recorded{options.out, stats.frames, stats.dropped + skipped, stats.bytes};
 }
 

@@ -47,6 +47,7 @@ FramePathOptions frame_path_options(const Configuration& configuration) {
   FramePathOptions options;
   options.radiometer.grid.rings = configuration.map.rings;
   options.radiometer.grid.sectors = configuration.map.sectors;
+  options.method = given.sampler;
   options.lights.count = given.count;
   options.lights.sampler = given.sampler == "standard" ? LightPipelineOptions::Sampler::standard
                                                        : LightPipelineOptions::Sampler::havran;

@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "interface/atomic_file.h"
+#include "interface/dds_domain.h"
 
 namespace lightwell {
 namespace {
@@ -138,7 +139,7 @@ const std::vector<Key>& keys() {
       text("record.codec", "raw is fast, ffv1 small; both lossless", &C::record, &C::Record::codec,
            {"raw", "ffv1"}),
       text("http.listen", "ADDRESS:PORT of page and interface, loopback only", &C::http, &C::Http::listen),
-      integer("dds.domain", "DDS domain", &C::dds, &C::Dds::domain, 0, 232),
+      integer("dds.domain", "DDS domain", &C::dds, &C::Dds::domain, 0, kMaxDdsDomain),
       text("dds.interface", "network interface of DDS; lo stays on this machine", &C::dds,
            &C::Dds::network_interface),
       number("dds.environment_hz", "radiance maps published a second, 0: none", &C::dds,
@@ -206,7 +207,7 @@ std::optional<Value> to_value(const toml::node& node) {
   return std::nullopt;
 }
 
-void remember(Origins& origins, const std::string& key, std::string origin) {
+void remember(Origins& origins, const std::string& key, const std::string& origin) {
   for (auto& [name, where] : origins)
     if (name == key) where = origin;
 }

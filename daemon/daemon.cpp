@@ -87,8 +87,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Configuration& configuration
                                     p.snapshots, *daemon);
   if (!publisher) return publisher.error();
   p.publisher = std::move(*publisher);
-  auto web =
-      WebServer::start({configuration.http.listen, configuration.lights.sampler}, p.snapshots, *daemon);
+  auto web = WebServer::start({configuration.http.listen}, p.snapshots, *daemon);
   if (!web) return web.error();
   p.web = std::move(*web);
 

@@ -138,9 +138,7 @@ int run(const Arguments& arguments) {
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app{"lightwelld: camera frames to lights, live", "lightwelld"};
   app.set_version_flag("--version", "lightwelld 0.1.0");
   app.failure_message(CLI::FailureMessage::simple);
@@ -148,12 +146,20 @@ int main(int argc, char** argv) {
   add_options(app, arguments);
   try {
     app.parse(argc, argv);
-    mallopt(M_ARENA_MAX, 2);  // a dozen threads that allocate little need no heap each
-    spdlog::set_default_logger(spdlog::stderr_logger_mt("lightwelld"));
-    spdlog::set_pattern("lightwelld: %l: %v");
-    return run(arguments);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ErrorKind::usage);
+  }
+  mallopt(M_ARENA_MAX, 2);  // a dozen threads that allocate little need no heap each
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("lightwelld"));
+  spdlog::set_pattern("lightwelld: %l: %v");
+  return run(arguments);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "lightwelld: %s\n", error.what());
     return static_cast<int>(ErrorKind::failed);

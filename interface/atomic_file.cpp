@@ -30,6 +30,12 @@ bool write_all(int fd, std::string_view content) {
 
 }  // namespace
 
+Status check_output_name(const std::filesystem::path& file) {
+  if (file != "-") return {};
+  return Error{ErrorKind::usage,
+               "output '-': standard output is /dev/stdout, and a file of this name is ./-"};
+}
+
 AtomicFileWriter::AtomicFileWriter(std::filesystem::path file, std::string temporary, int fd)
     : file_(std::move(file)), temporary_(std::move(temporary)), fd_(fd) {}
 
@@ -45,6 +51,7 @@ AtomicFileWriter::~AtomicFileWriter() {
 }
 
 Result<AtomicFileWriter> AtomicFileWriter::create(const std::filesystem::path& file) {
+  if (Status named = check_output_name(file); !named) return named.error();
   struct stat info {};
   const bool exists = ::stat(file.c_str(), &info) == 0;
   if (exists && S_ISDIR(info.st_mode)) {

@@ -12,6 +12,10 @@
 
 namespace lightwell {
 
+// usage where an output is called "-", which other programs take for standard output: every writer of ours refuses
+// it and names /dev/stdout, which works where a file is written in one go.
+Status check_output_name(const std::filesystem::path& file);
+
 // Writes a file whole or not at all: temporary file beside it, fsync, rename. Kind failed with the reason and
 // path. A link is followed; into a device or pipe (/dev/stdout) it is written straight, nothing is renamed.
 Status write_file_atomically(const std::filesystem::path& file, std::string_view content);

@@ -13,10 +13,6 @@
 namespace lightwell {
 namespace {
 
-// The RTPS port of a domain is 7400 + 250 × domain + 1 (DDSI-RTPS 2.3, 9.6.1.1; participants have no
-// number), and must fit 16 bits.
-constexpr int kMaxDomain = 232;
-
 // Cyclone DDS has one domain object an id and process; so do we.
 struct Registry {
   std::mutex mutex;
@@ -33,9 +29,9 @@ bool is_ipv4(const std::string& text) {
 }
 
 Status check(const DdsOptions& options) {
-  if (options.domain < 0 || options.domain > kMaxDomain)
+  if (options.domain < 0 || options.domain > kMaxDdsDomain)
     return Error{ErrorKind::usage, "DDS domain " + std::to_string(options.domain) + " is not within 0 to " +
-                                       std::to_string(kMaxDomain)};
+                                       std::to_string(kMaxDdsDomain)};
   if (!is_ipv4(options.interface) && ::if_nametoindex(options.interface.c_str()) == 0)
     return Error{ErrorKind::usage, "DDS interface '" + options.interface +
                                        "' does not exist on this machine (`ip link` lists those that do)"};

@@ -10,8 +10,12 @@
 
 namespace lightwell {
 
+// The multicast port of a domain is 7400 + 250 × domain + 1 (DDSI-RTPS 2.3, 9.6.1.1) and must fit 16 bits;
+// Cyclone DDS opens all up to this one and refuses the next.
+inline constexpr int kMaxDdsDomain = 232;
+
 struct DdsOptions {
-  int domain = 0;                // 0 to 232; programs see each other only inside one domain
+  int domain = 0;                // 0 to kMaxDdsDomain; programs see each other only inside one domain
   std::string interface = "lo";  // network interface, by name or address; "lo" reaches this machine only
 };
 

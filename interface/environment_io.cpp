@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "interface/environment_io.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <new>
 #include <span>
 
@@ -43,11 +45,16 @@ EnvironmentImage repair(LatLongImage image) {
 
 }  // namespace
 
-std::string EnvironmentImage::repaired(const std::filesystem::path& file) const {
+std::string EnvironmentImage::remark(const std::filesystem::path& file) const {
   std::string what;
   if (not_finite > 0) what += std::to_string(not_finite) + " values are NaN or infinite";
   if (negative > 0) what += (what.empty() ? "" : ", ") + std::to_string(negative) + " values are negative";
-  return what.empty() ? what : file.string() + ": " + what + "; read as 0";
+  if (!what.empty()) what += "; read as 0";
+  // Odd sizes miss 2:1 by a pixel or two and mean no harm.
+  if (std::abs(image.width - 2 * image.height) > std::max(2, image.width / 50))
+    what = std::to_string(image.width) + "x" + std::to_string(image.height) +
+           " is not 2:1; read as a latitude–longitude image all the same" + (what.empty() ? "" : "; ") + what;
+  return what.empty() ? what : file.string() + ": " + what;
 }
 
 Result<EnvironmentImage> environment_from_bytes(std::string_view bytes, const std::string& name) {

@@ -16,8 +16,9 @@ struct EnvironmentImage {
   LatLongImage image;            // finite, ≥ 0
   std::uint64_t not_finite = 0;  // values that were NaN or ±∞, read as 0
   std::uint64_t negative = 0;    // values below 0, read as 0
-  // One line for a person where either count is positive, else empty.
-  [[nodiscard]] std::string repaired(const std::filesystem::path& file) const;
+  // One line for a person: what was read as 0, and that the size is not 2:1 as a whole sphere's is (a square or
+  // cross-shaped picture is probably not latitude–longitude). Empty where there is nothing to say.
+  [[nodiscard]] std::string remark(const std::filesystem::path& file) const;
 };
 
 // Latitude–longitude EXR (any storage, tiled or mip-mapped: full resolution) or Radiance HDR (RGBE, rows from the top).

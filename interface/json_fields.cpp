@@ -47,6 +47,17 @@ JsonFields JsonFields::object(std::string_view key) const {
   return {get(key), file_, path_.empty() ? std::string(key) : path_ + "." + std::string(key)};
 }
 
+std::vector<JsonFields> JsonFields::objects(std::string_view key) const {
+  const nlohmann::json& value = get(key);
+  if (!value.is_array()) fail(key, "is " + shown(value) + ", expected an array of objects");
+  const std::string path = path_.empty() ? std::string(key) : path_ + "." + std::string(key);
+  std::vector<JsonFields> list;
+  list.reserve(value.size());
+  for (std::size_t i = 0; i < value.size(); ++i)
+    list.emplace_back(value[i], file_, path + "[" + std::to_string(i) + "]");
+  return list;
+}
+
 double JsonFields::number(std::string_view key) const {
   const nlohmann::json& value = get(key);
   if (!value.is_number() || !std::isfinite(value.get<double>()))
@@ -55,11 +66,16 @@ double JsonFields::number(std::string_view key) const {
 }
 
 int JsonFields::integer(std::string_view key, int lowest, int highest) const {
+  return static_cast<int>(whole(key, lowest, highest));
+}
+
+std::int64_t JsonFields::whole(std::string_view key, std::int64_t lowest, std::int64_t highest) const {
   const double value = number(key);
-  if (value != std::floor(value) || value < lowest || value > highest)
+  if (value != std::floor(value) || value < static_cast<double>(lowest) ||
+      value > static_cast<double>(highest))
     fail(key, "= " + shown(get(key)) + ": allowed a whole number from " + std::to_string(lowest) + " to " +
                   std::to_string(highest));
-  return static_cast<int>(value);
+  return static_cast<std::int64_t>(value);
 }
 
 std::string JsonFields::text(std::string_view key) const {
@@ -87,9 +103,16 @@ double JsonFields::element(const nlohmann::json& array, std::string_view key, st
   return value.get<double>();
 }
 
-void JsonFields::numbers(std::string_view key, std::span<double> values) const {
+void JsonFields::numbers(std::string_view key, std::span<double> values, double lowest,
+                         double highest) const {
   const nlohmann::json& array = array_of(key, values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = element(array, key, i);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = element(array, key, i);
+    if (values[i] >= lowest && values[i] <= highest) continue;
+    const nlohmann::json range = {lowest, highest};
+    fail(std::string(key) + "[" + std::to_string(i) + "]",
+         "= " + shown(array[i]) + ": allowed " + range[0].dump() + " to " + range[1].dump());
+  }
 }
 
 std::vector<double> JsonFields::number_list(std::string_view key) const {

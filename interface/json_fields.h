@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,16 +29,21 @@ class JsonFields {
 
   [[nodiscard]] bool has(std::string_view key) const;
   [[nodiscard]] JsonFields object(std::string_view key) const;
-  [[nodiscard]] double number(std::string_view key) const;  // finite
+  [[nodiscard]] std::vector<JsonFields> objects(std::string_view key) const;  // of an array, in order
+  [[nodiscard]] double number(std::string_view key) const;                    // finite
   [[nodiscard]] int integer(std::string_view key, int lowest, int highest) const;
+  // Exact up to 2^53.
+  [[nodiscard]] std::int64_t whole(std::string_view key, std::int64_t lowest, std::int64_t highest) const;
   [[nodiscard]] std::string text(std::string_view key) const;
   void require_schema(std::string_view schema) const;
-  // values.size() numbers
-  void numbers(std::string_view key, std::span<double> values) const;
+  // values.size() numbers, each finite and within the range
+  void numbers(std::string_view key, std::span<double> values, double lowest = -kAny,
+               double highest = kAny) const;
   [[nodiscard]] std::vector<double> number_list(std::string_view key) const;
   [[noreturn]] void fail(std::string_view key, std::string_view what) const;
 
  private:
+  static constexpr double kAny = std::numeric_limits<double>::max();
   [[nodiscard]] const nlohmann::json& get(std::string_view key) const;
   [[nodiscard]] const nlohmann::json& array_of(std::string_view key, std::size_t count) const;
   [[nodiscard]] double element(const nlohmann::json& array, std::string_view key, std::size_t i) const;

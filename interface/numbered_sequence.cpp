@@ -48,7 +48,8 @@ std::optional<std::uint64_t> number_of(const std::string& name, const Pattern& p
 }  // namespace
 
 bool is_numbered_sequence(const std::string& pattern) {
-  return find_placeholder(pattern).has_value();
+  std::error_code ignored;
+  return find_placeholder(pattern).has_value() && !std::filesystem::is_regular_file(pattern, ignored);
 }
 
 Result<std::vector<std::filesystem::path>> sequence_files(const std::string& text) {

@@ -11,6 +11,7 @@
 namespace lightwell {
 
 // "env_%04d.exr": one %d or %0Nd in the file's name stands for the frame's number, zero-padded to N digits.
+// A file that has the very name is that file and no sequence.
 bool is_numbered_sequence(const std::string& pattern);
 
 // The files of a sequence in order of number, from the smallest there is.

@@ -23,6 +23,12 @@ PartFile::~PartFile() {
   if (!part_.empty()) std::filesystem::remove(part_, ignored);
 }
 
+Error PartFile::about_out(Error error) const {
+  if (const auto at = error.message.find(part_.string()); at != std::string::npos)
+    error.message.replace(at, part_.string().size(), out_.string());
+  return error;
+}
+
 Status PartFile::keep(bool overwrite) {
   const auto failure = [this](const char* why) {
     return Error{ErrorKind::failed, out_.string() + ": cannot write: " + why};

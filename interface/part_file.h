@@ -18,6 +18,8 @@ class PartFile {
   PartFile& operator=(const PartFile&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const { return part_; }
+  // The error as the caller should see it: with out's name where it has the hidden one.
+  [[nodiscard]] Error about_out(Error error) const;
   // Fails where `out` exists, unless overwrite.
   Status keep(bool overwrite = false);
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lighting/spherical_cap.h"
+
 namespace lightwell {
 namespace {
 
@@ -46,12 +48,6 @@ std::vector<std::vector<Share>> shares_by_area(int sources, SourceEdge source_ed
       if (std::abs(total - 1) < 1e-9) share.fraction /= total;
     }
   return shares;
-}
-
-// 1 − cos θ without cancellation near the zenith: the area of a cap is 2π times it.
-double cap_measure(double theta_rad) {
-  const double s = std::sin(theta_rad / 2);
-  return 2 * s * s;
 }
 
 // The map's bin whose area holds the direction (theta, lambda), the edge's where it lies beyond.
@@ -165,6 +161,26 @@ PolarMap resample_polar(const PolarMap& map, const PolarGrid& grid) {
                      ? static_cast<float>(static_cast<double>(map.coverage) * measured_out / measured_in)
                      : 0.0f;
   return out;
+}
+
+LatLongImage lat_long_from_polar_map(const PolarMap& map) {
+  LatLongImage image;
+  image.height = std::max(2, static_cast<int>(std::lround(map.grid.rings * kPi / map.grid.theta_max_rad)));
+  image.width = map.grid.sectors + map.grid.sectors % 2;
+  const PolarGrid sphere{image.height, image.width, kPi};
+  const PolarMap whole = resample_polar(map, sphere);
+  image.pixels.resize(sphere.size());
+  for (int y = 0; y < image.height; ++y) {
+    // Bins beyond the map carry its edge's radiance: nothing was measured there.
+    const bool measured = (y + 0.5) * kPi / image.height < map.grid.theta_max_rad;
+    for (int x = 0; x < image.width; ++x) {
+      // Column x spans the azimuths below 2π (W/2 − x) / W: the sectors run the other way, from the middle.
+      const int sector = (image.width / 2 - x - 1 + image.width) % image.width;
+      const auto bin = static_cast<std::size_t>(y * image.width + sector);
+      image.at(x, y) = measured ? whole.rgb(bin) : Rgb(Rgb::Zero());
+    }
+  }
+  return image;
 }
 
 }  // namespace lightwell

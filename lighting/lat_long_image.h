@@ -41,4 +41,8 @@ PolarMap polar_map_from_lat_long(const LatLongImage& image, bool hemisphere, dou
 // Bins of the grid beyond the map carry their nearest radiance and solid angle 0.
 PolarMap resample_polar(const PolarMap& map, const PolarGrid& grid);
 
+// The map as an image of the whole sphere, black below the map's edge. One column a sector and one row a ring where the
+// grid allows it (90 × 360 over a hemisphere: 360 × 180, without resampling), else resampled by area.
+LatLongImage lat_long_from_polar_map(const PolarMap& map);
+
 }  // namespace lightwell

@@ -7,13 +7,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "lighting/spherical_cap.h"
+
 namespace lightwell {
 namespace {
-
-// 1 − cos θ: proportional to the solid angle of the cap, without cancellation near the pole.
-double cap_measure(double theta_rad) {
-  return 2 * std::pow(std::sin(theta_rad / 2), 2);
-}
 
 // Zones from the zenith down, each of a whole number of cells.
 class EqualAreaCells {

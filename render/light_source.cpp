@@ -56,7 +56,7 @@ class LiveLights final : public LightSource {
 
   Result<bool> update(int /*frame*/, std::chrono::milliseconds wait) override {
     if (environment_reader_ && environment_reader_->take(environment_frame_, std::chrono::milliseconds(0))) {
-      environment_ = lat_long_from_polar(environment_frame_.map);
+      environment_ = lat_long_from_polar_map(environment_frame_.map);
       ++environment_version_;
     }
     const bool arrived = reader_->take(frame_, wait);
@@ -109,8 +109,8 @@ std::unique_ptr<LightSource> fixed_lights(const LightSet& lights, int max_lights
 Result<std::unique_ptr<LightSource>> environment_lights(const EnvironmentOptions& options) {
   auto environment = read_environment(options.file);
   if (!environment) return environment.error();
-  if (const std::string repaired = environment->repaired(options.file); !repaired.empty())
-    std::fprintf(stderr, "lightwell-render: %s\n", repaired.c_str());
+  if (const std::string remark = environment->remark(options.file); !remark.empty())
+    std::fprintf(stderr, "lightwell-render: %s\n", remark.c_str());
   return std::unique_ptr<LightSource>(
       std::make_unique<EnvironmentLights>(options, std::move(environment->image)));
 }
@@ -128,28 +128,6 @@ Result<std::unique_ptr<LightSource>> live_lights(const LiveOptions& options) {
   }
   return std::unique_ptr<LightSource>(
       std::make_unique<LiveLights>(options, std::move(lights).value(), std::move(environment)));
-}
-
-LatLongImage lat_long_from_polar(const PolarMap& map) {
-  LatLongImage image;
-  image.width = map.grid.sectors;
-  image.height = std::max(1, static_cast<int>(std::lround(map.grid.rings * kPi / map.grid.theta_max_rad)));
-  image.pixels.assign(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height),
-                      Rgb::Zero());
-  for (int y = 0; y < image.height; ++y) {
-    const double theta = kPi * (y + 0.5) / image.height;
-    if (theta >= map.grid.theta_max_rad) break;
-    const auto ring =
-        std::min(static_cast<int>(theta / map.grid.theta_max_rad * map.grid.rings), map.grid.rings - 1);
-    for (int x = 0; x < image.width; ++x) {
-      const Spherical s = spherical_from_direction(direction_from_lat_long((x + 0.5) / image.width, 0.5));
-      const auto sector =
-          std::min(static_cast<int>(s.lambda_rad / (2 * kPi) * map.grid.sectors), map.grid.sectors - 1);
-      image.at(x, y) = map.rgb(static_cast<std::size_t>(ring) * static_cast<std::size_t>(map.grid.sectors) +
-                               static_cast<std::size_t>(sector));
-    }
-  }
-  return image;
 }
 
 }  // namespace lightwell::render

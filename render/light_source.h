@@ -61,7 +61,4 @@ struct LiveOptions {
 // one is kept), that it came back. failed: the network.
 Result<std::unique_ptr<LightSource>> live_lights(const LiveOptions& options);
 
-// Nearest bins; what the map does not cover is black.
-LatLongImage lat_long_from_polar(const PolarMap& map);
-
 }  // namespace lightwell::render

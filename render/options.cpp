@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "interface/dds_domain.h"
+
 namespace lightwell::render {
 namespace {
 
@@ -53,7 +55,9 @@ Parsed parse_options(int argc, const char* const* argv) {
   app.set_version_flag("--version", "lightwell 0.1.0");
   app.add_option("--scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
   auto* live = app.add_flag("--live", options.live, "light from a running daemon, over DDS");
-  app.add_option("--domain", options.domain, "DDS domain of --live")->check(CLI::Range(0, 230))->needs(live);
+  app.add_option("--domain", options.domain, "DDS domain of --live")
+      ->check(CLI::Range(0, kMaxDdsDomain))
+      ->needs(live);
   app.add_option("--interface", options.interface, "network interface of --live")
       ->capture_default_str()
       ->needs(live);

@@ -89,8 +89,8 @@ struct CaptureCounters {
 
 // A camera, a recording or a simulation. One implementation a file; made by make_capture_source from a source string.
 //
-// Threading: start, wait and stop are called from one thread (the frame path's). The source's own threads do all device
-// work; wait never touches the device, allocates nothing after the first frame, and returns within its timeout.
+// Threading: start, wait and stop are called one after the other, by whichever thread; wait only by the frame path's. The
+// source's own threads do all device work; wait never touches the device, allocates nothing after the first frame, and returns within its timeout.
 // A device that disappears is not an error: state() says so, the source reconnects by itself, wait returns empty.
 class CaptureSource {
  public:

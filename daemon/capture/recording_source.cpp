@@ -155,8 +155,9 @@ FrameLease RecordingSource::wait(std::chrono::milliseconds timeout) noexcept {
       const Decoded taken = pop();
       streaming_ = true;
       freed_.notify_one();
-      return {taken.info, pool_->buffer(taken.buffer), &RecordingSource::give_back, this,
-              reinterpret_cast<void*>(taken.buffer)};
+      // NOLINTNEXTLINE(performance-no-int-to-ptr): the lease's token is the buffer's number, not an address
+      void* const token = reinterpret_cast<void*>(taken.buffer);
+      return {taken.info, pool_->buffer(taken.buffer), &RecordingSource::give_back, this, token};
     }
     if (now >= deadline) return {};
     decoded_.wait_until(lock, ready_count_ > 0 ? std::min(deadline, ready(0).due) : deadline);

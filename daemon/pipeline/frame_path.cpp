@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "daemon/clock.h"
+#include "lighting/decompose.h"
 
 namespace lightwell {
 namespace {
@@ -86,6 +87,7 @@ void FramePath::process(const FrameInfo& info, std::span<const std::byte> codes)
     out.map = shape_;
     out.shape = shape_number_;
     out.lights.reserve(static_cast<std::size_t>(options_.lights.count));
+    out.method = options_.method;
     std::strncpy(out.calibration_id.data(), calibration_.id.c_str(), out.calibration_id.size() - 1);
   }
 
@@ -104,7 +106,7 @@ void FramePath::process(const FrameInfo& info, std::span<const std::byte> codes)
   out.received_mono_ns = info.received_mono_ns;
   out.format = info.format;
   out.exposure_us = info.exposure_us;
-  out.coverage = out.map.grid.theta_max_rad > kPi / 2 + 1e-6 ? Coverage::sphere : Coverage::hemisphere;
+  out.coverage = coverage_of(out.map.grid);
   out.total_illuminance = lights_->total_illuminance();
   out.measured_illuminance = total_illuminance(out.map).cast<float>();
   out.delay_frames = static_cast<float>(lights_->delay_frames());

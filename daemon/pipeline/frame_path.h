@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "daemon/capture/capture_source.h"
 #include "daemon/pipeline/latency.h"
@@ -19,6 +20,7 @@ namespace lightwell {
 
 struct FramePathOptions {
   RadiometerOptions radiometer;
+  std::string method = "live";  // what the lights are called: the sampler's name
   // rate_hz is the camera's and set by the frame path; pass_hz = stop_hz = 0 asks for the paper's 7/21 and
   // 9/21 of it.
   LightPipelineOptions lights{.pass_hz = 0, .stop_hz = 0};

@@ -56,18 +56,21 @@ Status Pipeline::replace(std::shared_ptr<CaptureSource> source, std::shared_ptr<
     const Status started = source->start();
     if (!started) return started;
   }
-  const std::scoped_lock lock(mutex_);
-  // A replacement that still waits gives way, but for its source where this one keeps the source. A source
-  // that gives way ends when `source` does, after the lock.
-  if (source) next_source_.swap(source);
-  next_path_ = std::move(path);
-  replacement_waits_ = true;
+  {
+    const std::scoped_lock lock(mutex_);
+    // A replacement that still waits gives way, but for its source where this one keeps the source.
+    if (source) next_source_.swap(source);
+    next_path_ = std::move(path);
+    replacement_waits_ = true;
+  }
+  if (source) retired_.take(std::move(source));  // the one that gave way
   return {};
 }
 
 void Pipeline::stop() noexcept {
   stopping_ = true;
   if (thread_.joinable()) thread_.join();
+  retired_.settle();
 }
 
 Pipeline::View Pipeline::view() const {
@@ -104,7 +107,7 @@ void Pipeline::take_replacement() {
     replacement_waits_ = false;
   }
   mismatched_ = false;
-  if (old_source) old_source->stop();
+  if (old_source) retired_.take(std::move(old_source));
 }
 
 void Pipeline::handle(const FrameLease& frame) {

@@ -12,6 +12,7 @@
 
 #include "daemon/capture/capture_source.h"
 #include "daemon/pipeline/frame_path.h"
+#include "daemon/pipeline/retired_sources.h"
 
 namespace lightwell {
 
@@ -35,10 +36,11 @@ class Pipeline {
   // Fails where the source cannot even begin (missing file); afterwards frames flow until stop.
   Status start(std::shared_ptr<CaptureSource> source, std::shared_ptr<FramePath> path);
   // Takes effect between two frames; the last call before that counts. source null: keep the one that runs
-  // (or that an earlier call has begun), without losing a frame.
+  // (or that an earlier call has begun), without losing a frame. A source that is replaced ends on a thread of
+  // its own, however long that takes.
   // A new source that cannot begin is refused here and the old one goes on.
   Status replace(std::shared_ptr<CaptureSource> source, std::shared_ptr<FramePath> path);
-  // Stops the thread and the source; up to 5 s where a camera died.
+  // Stops the thread and all sources; up to 5 s where a camera died.
   void stop() noexcept;
 
   struct View {  // for status; both stay valid while held
@@ -61,6 +63,7 @@ class Pipeline {
   void measure_rate(std::int64_t now_ns) noexcept;
 
   FrameSink* sink_;
+  RetiredSources retired_;
   std::thread thread_;
   std::atomic<bool> stopping_{false};
   std::atomic<std::uint64_t> heartbeat_{0};

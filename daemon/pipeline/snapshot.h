@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "lighting/frame_format.h"
@@ -30,6 +31,7 @@ struct Snapshot {
   Rgb total_illuminance = Rgb::Zero();     // filtered, what the lights stand for
   Rgb measured_illuminance = Rgb::Zero();  // of this very frame's map
   float delay_frames = 0;                  // lag of the lights behind the map
+  std::string method;                      // of the lights, by name
   std::vector<DirectionalLight> lights;    // capacity is kept from frame to frame
   PolarMap map;
   std::uint64_t shape = 0;  // changes with camera or calibration; the frame path's own

@@ -27,9 +27,9 @@ bool lights_form_a_tree(const std::vector<DirectionalLight>& lights) {
   return true;
 }
 
-LightSet light_set(const Snapshot& snapshot, const std::string& method) {
+LightSet light_set(const Snapshot& snapshot) {
   LightSet set;
-  set.method = method;
+  set.method = snapshot.method;
   set.coverage = snapshot.coverage;
   set.total_illuminance = snapshot.total_illuminance;
   set.lights = snapshot.lights;

@@ -16,7 +16,7 @@ ProbeStatus status_message(const DaemonStatus& status);
 // Every light but the first names an earlier one as its parent.
 bool lights_form_a_tree(const std::vector<DirectionalLight>& lights);
 
-// The snapshot's lights as a set; `method` is the sampler's name.
-LightSet light_set(const Snapshot& snapshot, const std::string& method);
+// The snapshot's lights as a set.
+LightSet light_set(const Snapshot& snapshot);
 
 }  // namespace lightwell

@@ -23,9 +23,7 @@ Status check_take_name(const std::string& file) {
   std::replace_if(
       shown.begin(), shown.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return Error{ErrorKind::usage,
-               "recording: file '" + shown +
-                   "' is not a plain name such as take.mkv: letters, digits, '.', '_', '-' and "
-                   "spaces, no leading '.' or '-', ends in .mkv, 128 at most"};
+               "recording: file '" + shown + "' is not a plain name such as take.mkv: " + kTakeNameRule};
 }
 
 }  // namespace lightwell

@@ -170,13 +170,10 @@ int run(CommandLine& c) {
   return told.failed() ? fail(told.error()) : 0;
 }
 
-}  // namespace
-}  // namespace lightwell::simulator
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app("A simulated GigE Vision lighting probe that looks at known light.", "lightwell-camera");
-  lightwell::simulator::CommandLine command_line;
-  lightwell::simulator::declare(app, command_line);
+  CommandLine command_line;
+  declare(app, command_line);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -184,8 +181,15 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "lightwell-camera: %s\n", error.what());
     return 2;
   }
+  return run(command_line);
+}
+
+}  // namespace
+}  // namespace lightwell::simulator
+
+int main(int argc, char** argv) {
   try {
-    return lightwell::simulator::run(command_line);
+    return lightwell::simulator::run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "lightwell-camera: %s\n", error.what());
     return 1;

@@ -3,9 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "daemon/simulator/scene.h"
+#include "daemon/simulator/paint.h"
 #include "daemon/simulator/value_noise.h"
-#include "lighting/direction.h"
 
 // A clear sky with sun and drifting clouds. Sky: Preetham, Shirley and Smits 1999, "A practical analytic
 // model for daylight", appendix; sun: the same paper's attenuation by molecules and aerosol. South is +Z,
@@ -124,16 +123,10 @@ class DayScene final : public Scene {
     const Sky sky(sun);
     // A thick cloud sends on about half of what falls on the ground, evenly.
     const Rgbd lit = 0.5 / kPi * (clear_sun_illuminance(std::asin(sun.y())) * sun.y() + 12000.0);
-    Layer out{{kWidth, kHeight, {}}, true};
-    out.image.pixels.assign(static_cast<std::size_t>(kWidth) * kHeight, Rgb::Zero());
-    for (int y = 0; y < kHeight / 2; ++y)
-      for (int x = 0; x < kWidth; ++x) {
-        const Vec3d d = direction_from_lat_long((x + 0.5) / kWidth, (y + 0.5) / kHeight);
-        const double a = cloud(d, time_s);
-        const Rgbd radiance = (1 - a) * sky.radiance(d) + a * lit;
-        out.image.at(x, y) = radiance.cast<float>();
-      }
-    return out;
+    return paint_upper_half(kWidth, kHeight, [&](const Vec3d& d) {
+      const double a = cloud(d, time_s);
+      return Rgbd((1 - a) * sky.radiance(d) + a * lit);
+    });
   }
 
   std::vector<std::int64_t> lasting_layers() const override { return {}; }

@@ -54,8 +54,8 @@ Result<std::shared_ptr<const Scene>> make_environment_scene(const std::vector<st
   for (const auto& file : files) {
     auto environment = read_environment(file);
     if (!environment) return environment.error();
-    if (std::string repaired = environment->repaired(file); !repaired.empty())
-      messages.push_back(std::move(repaired));
+    if (std::string remark = environment->remark(file); !remark.empty())
+      messages.push_back(std::move(remark));
     images.push_back(std::move(environment->image));
   }
   return make_image_scene(std::move(images), hold_s);

@@ -3,8 +3,7 @@
 #include <cmath>
 
 #include "daemon/simulator/mains_light.h"
-#include "daemon/simulator/scene.h"
-#include "lighting/direction.h"
+#include "daemon/simulator/paint.h"
 
 // Lamps that flicker faster than the camera: at twice 50 Hz and twice 60 Hz, and one dimmed by pulse width.
 // What a frame shows is their mean over its exposure, integrated in closed form.
@@ -35,19 +34,10 @@ class FlickerScene final : public Scene {
   }
 
   Layer layer(std::int64_t id) const override {
-    Layer out{{kWidth, kHeight, {}}, true};
-    out.image.pixels.assign(static_cast<std::size_t>(kWidth) * kHeight, Rgb::Zero());
-    for (int y = 0; y < kHeight / 2; ++y)
-      for (int x = 0; x < kWidth; ++x) {
-        const Vec3d d = direction_from_lat_long((x + 0.5) / kWidth, (y + 0.5) / kHeight);
-        double value = 15 + 10 * d.y();
-        if (id != kAmbient) {
-          const double c = std::max(0.0, d.dot(lamp_direction(id)));
-          value = 3 + 30 * c * c * c;
-        }
-        out.image.at(x, y) = Rgb::Constant(static_cast<float>(value));
-      }
-    return out;
+    return paint_upper_half(kWidth, kHeight, [&](const Vec3d& d) {
+      const double c = id == kAmbient ? 0 : std::max(0.0, d.dot(lamp_direction(id)));
+      return Rgbd(Rgbd::Constant(id == kAmbient ? 15 + 10 * d.y() : 3 + 30 * c * c * c));
+    });
   }
 
   std::vector<std::int64_t> lasting_layers() const override {

@@ -12,6 +12,10 @@
 namespace lightwell::simulator {
 namespace {
 
+// A scene's next keyframe takes several frames' time to make (40 ms of clouds); the frames before it must last.
+constexpr std::int64_t kAheadUs = 150'000;
+constexpr std::int64_t kFewestAhead = 3;
+
 std::int64_t real_now_us() {
   return utc_now_ns() / 1000;
 }
@@ -48,9 +52,8 @@ void PreparedFrames::run() {
   std::unique_lock lock(mutex_);
   while (running_) {
     tell(lock);
-    const auto free =
-        std::find_if(slots_.begin(), slots_.end(), [](const Slot& s) { return s.state == State::free; });
-    if (free == slots_.end()) {
+    Slot* const free = slot_to_fill();
+    if (free == nullptr) {
       work_.wait(lock);
       continue;
     }
@@ -64,13 +67,27 @@ void PreparedFrames::run() {
   tell(lock);
 }
 
+// A free slot, while fewer are taken than kAheadUs asks for, and one that is copied.
+PreparedFrames::Slot* PreparedFrames::slot_to_fill() {
+  const std::int64_t ahead = period_us_ > 0 ? std::max(kFewestAhead, kAheadUs / period_us_) : kFewestAhead;
+  const auto taken =
+      std::count_if(slots_.begin(), slots_.end(), [](const Slot& s) { return s.state != State::free; });
+  if (taken > ahead) return nullptr;
+  const auto free =
+      std::find_if(slots_.begin(), slots_.end(), [](const Slot& s) { return s.state == State::free; });
+  return free == slots_.end() ? nullptr : &*free;
+}
+
 void PreparedFrames::make(Slot& slot) {
   slot.settings = settings_();
   const std::int64_t period = std::max<std::int64_t>(slot.settings.period_us, 1);
+  period_us_ = period;
   const std::int64_t next = real_now_us() / period * period + period;
   slot.due_real_us = std::max(last_due_us_ + period, next);
   // After a pause or a change of rate the schedule starts anew at the next whole period.
-  if (slot.due_real_us % period != 0 || slot.due_real_us > next + 4 * period) slot.due_real_us = next;
+  if (slot.due_real_us % period != 0 ||
+      slot.due_real_us > next + static_cast<std::int64_t>(slots_.size()) * period)
+    slot.due_real_us = next;
   // The scene goes on with the clock while frames follow each other, and stands while nobody takes any.
   const std::int64_t passed = slot.due_real_us - last_due_us_;
   scene_s_ += 1e-6 * static_cast<double>(passed > 0 && passed <= 8 * period ? passed : period);

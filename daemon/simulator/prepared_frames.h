@@ -69,6 +69,7 @@ class PreparedFrames {
   };
 
   void run();
+  Slot* slot_to_fill();
   void make(Slot& slot);
   Slot* oldest_ready();
   void drop_stale(const CameraSettings& wanted, std::int64_t now_real_us);
@@ -81,10 +82,11 @@ class PreparedFrames {
   mutable std::mutex mutex_;
   std::condition_variable work_, ready_;
   bool running_ = true;
-  std::array<Slot, 4> slots_;  // three ahead of the one that is copied: 50 ms at 60 Hz
+  std::array<Slot, 16> slots_;  // as many in use as kAhead takes
   std::vector<SentFrame> to_tell_;
   std::uint64_t taken_ = 0;
   std::int64_t last_due_us_ = 0;  // worker only
+  std::int64_t period_us_ = 0;    // of the last frame made; worker only
   double scene_s_ = 0;            // worker only
   std::uint64_t made_ = 0;        // worker only
   std::thread thread_;            // last: starts when all else is there

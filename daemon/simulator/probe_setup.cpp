@@ -65,7 +65,7 @@ Status set_calibration(const ProbeOptions& options, ProbeSetup& setup) {
     calibration.lens = *lens;
   }
   calibration.flat = default_flat_field(format.width, format.height, bits, options.seed);
-  if (const Status status = check(calibration.flat, calibration.lens); !status) return status;
+  if (Status status = check(calibration.flat, calibration.lens); !status) return status;
   calibration.id = calibration_id(calibration);
   return {};
 }

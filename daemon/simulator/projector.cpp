@@ -31,21 +31,6 @@ float part_inside(const Lens& lens, int x, int y) {
   return static_cast<float>(std::max(inside, 1)) / 64;
 }
 
-// Sum of radiance × solid angle of the rows down to theta_max.
-Rgbd cap_illuminance(const LatLongImage& image, double theta_max_rad) {
-  Rgbd total = Rgbd::Zero();
-  for (int y = 0; y < image.height && kPi * y / image.height < theta_max_rad; ++y) {
-    const double top = kPi * y / image.height;
-    const double bottom = std::min(kPi * (y + 1) / image.height, theta_max_rad);
-    const double omega =
-        2 * std::sin((top + bottom) / 2) * std::sin((bottom - top) / 2) * 2 * kPi / image.width;
-    Rgbd row = Rgbd::Zero();
-    for (int x = 0; x < image.width; ++x) row += image.at(x, y).cast<double>();
-    total += omega * row;
-  }
-  return total;
-}
-
 }  // namespace
 
 Projector::Projector(const Lens& lens, bool bayer) : lens_(lens), bayer_(bayer) {

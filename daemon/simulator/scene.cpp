@@ -44,11 +44,11 @@ double part_above_horizon(const DiscLight& light) {
   return 1 - (std::acos(d) - d * std::sqrt(1 - d * d)) / kPi;
 }
 
-Rgbd hemisphere_illuminance(const LatLongImage& image) {
+Rgbd cap_illuminance(const LatLongImage& image, double theta_max_rad) {
   Rgbd total = Rgbd::Zero();
-  for (int y = 0; 2 * y < image.height; ++y) {
+  for (int y = 0; y < image.height && kPi * y / image.height < theta_max_rad; ++y) {
     const double top = kPi * y / image.height;
-    const double bottom = std::min(kPi * (y + 1) / image.height, kPi / 2);
+    const double bottom = std::min(kPi * (y + 1) / image.height, theta_max_rad);
     const double omega =
         2 * std::sin((top + bottom) / 2) * std::sin((bottom - top) / 2) * 2 * kPi / image.width;
     Rgbd row = Rgbd::Zero();

@@ -40,8 +40,11 @@ struct Layer {
       false;  // changes little from pixel to pixel: may be interpolated; else each pixel's energy is placed
 };
 
-// Σ radiance × solid angle over the upper hemisphere, exact for the image as pixels of even radiance.
-Rgbd hemisphere_illuminance(const LatLongImage& image);
+// Σ radiance × solid angle down to a zenith angle, exact for the image as pixels of even radiance.
+Rgbd cap_illuminance(const LatLongImage& image, double theta_max_rad);
+inline Rgbd hemisphere_illuminance(const LatLongImage& image) {
+  return cap_illuminance(image, kPi / 2);
+}
 
 // The mean of a scene over one exposure: Σ weight × layer + discs.
 struct SceneMoment {

@@ -89,6 +89,7 @@ std::vector<float> standard_normal_values(std::uint64_t seed) {
   for (const double v : values) mean += v / static_cast<double>(kNoiseValues);
   for (const double v : values) square += (v - mean) * (v - mean) / static_cast<double>(kNoiseValues);
   std::vector<float> out;
+  out.reserve(values.size());
   for (const double v : values) out.push_back(static_cast<float>((v - mean) / std::sqrt(square)));
   return out;
 }

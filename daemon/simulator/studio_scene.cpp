@@ -3,8 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "daemon/simulator/scene.h"
-#include "lighting/direction.h"
+#include "daemon/simulator/paint.h"
 
 // A studio: two windows, dim walls, a key lamp that swings across, a fill lamp that is dimmed up and down,
 // and a small practical lamp. Still, the same studio is the scenario `static`.
@@ -34,19 +33,6 @@ double inside(const Window& w, double elevation_deg, double azimuth_deg) {
   return ramp(w.half_width_deg + 0.5, w.half_width_deg - 0.5, away) *
          ramp(w.lowest_deg - 0.5, w.lowest_deg + 0.5, elevation_deg) *
          ramp(w.highest_deg + 0.5, w.highest_deg - 0.5, elevation_deg);
-}
-
-template <class Radiance>
-Layer paint(Radiance radiance) {
-  Layer out{{kWidth, kHeight, {}}, true};
-  out.image.pixels.assign(static_cast<std::size_t>(kWidth) * kHeight, Rgb::Zero());
-  for (int y = 0; y < kHeight / 2; ++y)
-    for (int x = 0; x < kWidth; ++x) {
-      const Vec3d d = direction_from_lat_long((x + 0.5) / kWidth, (y + 0.5) / kHeight);
-      const Rgbd value = radiance(d);
-      out.image.at(x, y) = value.cast<float>();
-    }
-  return out;
 }
 
 Vec3d toward(double elevation_deg, double azimuth_deg) {
@@ -83,9 +69,9 @@ class StudioScene final : public Scene {
   }
 
   Layer layer(std::int64_t id) const override {
-    if (id == kRoom) return paint(room);
+    if (id == kRoom) return paint_upper_half(kWidth, kHeight, room);
     const Vec3d fill = toward(35, 150);
-    return paint([&](const Vec3d& d) {
+    return paint_upper_half(kWidth, kHeight, [&](const Vec3d& d) {
       const double c = std::max(0.0, d.dot(fill));
       return Rgbd(Rgbd::Constant(6 + 45 * c * c * c * c));
     });

@@ -3,8 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "daemon/simulator/scene.h"
-#include "lighting/direction.h"
+#include "daemon/simulator/paint.h"
 
 // The probe is carried through a room with near lamps: their direction, size and strength change with its
 // place. Metres; the probe's height is y = 0, the ceiling is above it. Light is not interreflected: walls
@@ -91,15 +90,8 @@ class WalkScene final : public Scene {
 
   Layer layer(std::int64_t id) const override {
     const Vec3d from = probe_position(static_cast<double>(id) * kKeyframe_s);
-    Layer out{{kWidth, kHeight, {}}, true};
-    out.image.pixels.assign(static_cast<std::size_t>(kWidth) * kHeight, Rgb::Zero());
-    for (int y = 0; y < kHeight / 2; ++y)
-      for (int x = 0; x < kWidth; ++x) {
-        const Vec3d d = direction_from_lat_long((x + 0.5) / kWidth, (y + 0.5) / kHeight);
-        const Rgbd radiance = wall_radiance(meet_wall(from, d));
-        out.image.at(x, y) = radiance.cast<float>();
-      }
-    return out;
+    return paint_upper_half(kWidth, kHeight,
+                            [&](const Vec3d& d) { return wall_radiance(meet_wall(from, d)); });
   }
 
   std::vector<std::int64_t> lasting_layers() const override { return {}; }

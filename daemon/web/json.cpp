@@ -89,8 +89,8 @@ std::string status_json(const DaemonStatus& status) {
   });
 }
 
-std::string lights_json(const Snapshot& snapshot, const std::string& method) {
-  const std::string set = light_set_to_json(light_set(snapshot, method), true);
+std::string lights_json(const Snapshot& snapshot) {
+  const std::string set = light_set_to_json(light_set(snapshot), true);
   Json frame{{"number", snapshot.number},
              {"sequence", snapshot.sequence},
              {"capture_time_ns", snapshot.capture_mono_ns},

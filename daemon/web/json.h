@@ -12,7 +12,7 @@ namespace lightwell {
 // The bodies of the web interface (interface/openapi.yaml). What is not finite is null.
 std::string status_json(const DaemonStatus& status);
 // lightwell.lights/1 with the frame's number, sequence, times, calibration and delay beside it.
-std::string lights_json(const Snapshot& snapshot, const std::string& method);
+std::string lights_json(const Snapshot& snapshot);
 // One server-sent event, "id: …\ndata: {…}\n\n"; once a frame, so written by hand into the memory of `event`.
 void write_stream_event(const Snapshot& snapshot, std::string& event);
 // {"error": message}

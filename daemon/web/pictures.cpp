@@ -74,26 +74,6 @@ Rgb sample(const PolarMap& map, float theta, float azimuth) {
 
 }  // namespace
 
-LatLongImage lat_long_from_polar_map(const PolarMap& map) {
-  LatLongImage image;
-  image.height = std::max(2, static_cast<int>(std::lround(map.grid.rings * kPi / map.grid.theta_max_rad)));
-  image.width = map.grid.sectors + map.grid.sectors % 2;
-  const PolarGrid sphere{image.height, image.width, kPi};
-  const PolarMap whole = resample_polar(map, sphere);
-  image.pixels.resize(sphere.size());
-  for (int y = 0; y < image.height; ++y) {
-    // Bins beyond the map carry its edge's radiance: nothing was measured there.
-    const bool measured = (y + 0.5) * kPi / image.height < map.grid.theta_max_rad;
-    for (int x = 0; x < image.width; ++x) {
-      // Column x spans the azimuths below 2π (W/2 − x) / W: the sectors run the other way, from the middle.
-      const int sector = (image.width / 2 - x - 1 + image.width) % image.width;
-      const auto bin = static_cast<std::size_t>(y * image.width + sector);
-      image.at(x, y) = measured ? whole.rgb(bin) : Rgb(Rgb::Zero());
-    }
-  }
-  return image;
-}
-
 std::vector<std::uint8_t> fisheye_picture(const PolarMap& map, int size) {
   const Exposure exposure = expose(map);
   std::vector<std::uint8_t> picture(static_cast<std::size_t>(size) * static_cast<std::size_t>(size) * 3);

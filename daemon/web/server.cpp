@@ -15,21 +15,16 @@
 #include <atomic>
 #include <cstring>
 #include <deque>
-#include <functional>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
+#include "daemon/web/answers.h"
 #include "daemon/web/json.h"
 #include "daemon/web/listen_address.h"
 #include "daemon/web/metrics.h"
-#include "daemon/web/page_files.h"
-#include "daemon/web/pictures.h"
 #include "daemon/web/stream.h"
-#include "interface/environment_io.h"
 #include "interface/host_port.h"
-#include "interface/jpeg.h"
 
 namespace lightwell {
 namespace {
@@ -42,22 +37,9 @@ constexpr std::size_t kMaxBody = 64 << 10;  // the largest request is a file nam
 constexpr ev_ssize_t kMaxReadBody = 1 << 20;
 constexpr ev_ssize_t kMaxHeaders = 16 << 10;
 constexpr int kIdleTimeout_s = 30;
-constexpr int kPictureSize = 560;       // pixels; sharp on a phone, a few milliseconds to make
 constexpr std::size_t kMaxQueued = 64;  // events between the two threads
 constexpr auto kStopCheck = 100ms;      // how long the watcher may wait before it looks whether to stop
 constexpr timeval kHeartbeat{1, 0};
-
-constexpr const char* kNoFrame = "no frame has been published yet";
-
-struct Answer {
-  int status = 200;
-  const char* type = "application/json";
-  std::string body;
-};
-
-Answer error_answer(int status, const std::string& message) {
-  return {status, "application/json", error_json(message)};
-}
 
 const char* reason(int status) {
   switch (status) {
@@ -82,14 +64,6 @@ const char* reason(int status) {
   }
 }
 
-const char* type_of(std::string_view name) {
-  if (name.ends_with(".html")) return "text/html; charset=utf-8";
-  if (name.ends_with(".css")) return "text/css; charset=utf-8";
-  if (name.ends_with(".js")) return "text/javascript; charset=utf-8";
-  if (name.ends_with(".svg")) return "image/svg+xml";
-  return "application/yaml";
-}
-
 std::string header(evhttp_request* request, const char* name) {
   const char* value = evhttp_find_header(evhttp_request_get_input_headers(request), name);
   return value == nullptr ? std::string() : value;
@@ -112,7 +86,7 @@ void add_common_headers(evhttp_request* request) {
                     "default-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'");
 }
 
-void send(evhttp_request* request, const Answer& answer) {
+void send(evhttp_request* request, const WebAnswer& answer) {
   add_common_headers(request);
   evkeyvalq* headers = evhttp_request_get_output_headers(request);
   evhttp_add_header(headers, "Content-Type", answer.type);
@@ -126,7 +100,7 @@ void send(evhttp_request* request, const Answer& answer) {
 
 struct WebServer::Impl {
   Impl(WebServerOptions o, SnapshotChannel& s, DaemonControl& c)
-      : options(std::move(o)), snapshots(s), control(c) {}
+      : options(std::move(o)), snapshots(s), answers(s, c, counters) {}
   ~Impl();
   Status listen(const HostPort& address);
   Status run();
@@ -137,19 +111,11 @@ struct WebServer::Impl {
   void serve();
   void on_wake();
   void handle(evhttp_request* request);
-  std::optional<Answer> refuse(evhttp_request* request);
+  std::optional<WebAnswer> refuse(evhttp_request* request);
   void open_stream(evhttp_request* request);
-  std::function<Answer()> find(const std::string& path);
-  Answer status();
-  Answer lights();
-  Answer metrics();
-  Answer environment_exr();
-  Answer environment_jpg();
-  Answer record(const std::string& body);
 
   WebServerOptions options;
   SnapshotChannel& snapshots;
-  DaemonControl& control;
 
   event_base* base = nullptr;
   evhttp* http = nullptr;
@@ -161,14 +127,7 @@ struct WebServer::Impl {
 
   StreamClients streams;
   WebCounters counters;
-  // The last one made of each kind: many viewers cost one.
-  struct Picture {
-    std::uint64_t number = 0;
-    std::int64_t capture_ns = 0;
-    std::string body;
-  };
-  Answer picture(Picture& last, const char* type, Result<std::string> (*make)(const Snapshot&));
-  Picture exr_picture, jpg_picture;
+  WebAnswers answers;
 
   std::mutex mutex;
   std::deque<StreamEvent> queue;          // guarded by mutex
@@ -214,7 +173,8 @@ WebServer::Impl::~Impl() {
 
 Status WebServer::Impl::listen(const HostPort& address) {
   base = event_base_new();
-  http = evhttp_new(base);
+  if (base != nullptr) http = evhttp_new(base);
+  if (http == nullptr) return Error{ErrorKind::failed, "web server: no memory or no way to wait for sockets"};
   // libevent answers 413 and 400 beyond these.
   evhttp_set_max_body_size(http, kMaxReadBody);
   evhttp_set_max_headers_size(http, kMaxHeaders);
@@ -244,11 +204,12 @@ Status WebServer::Impl::run() {
   wake = event_new(
       base, wake_fd, EV_READ | EV_PERSIST,
       [](evutil_socket_t, short, void* self) { static_cast<Impl*>(self)->on_wake(); }, this);
-  event_add(wake, nullptr);
   heartbeat = event_new(
       base, -1, EV_PERSIST,
       [](evutil_socket_t, short, void* self) { static_cast<Impl*>(self)->streams.heartbeat(); }, this);
-  event_add(heartbeat, &kHeartbeat);
+  if (wake == nullptr || heartbeat == nullptr || event_add(wake, nullptr) != 0 ||
+      event_add(heartbeat, &kHeartbeat) != 0)
+    return Error{ErrorKind::failed, "web server: no memory for its events"};
   server_thread = std::thread([this] { serve(); });
   watcher_thread = std::thread([this] { watch(); });
   return {};
@@ -305,7 +266,7 @@ void WebServer::Impl::on_wake() {
   listeners = streams.count();
 }
 
-std::optional<Answer> WebServer::Impl::refuse(evhttp_request* request) {
+std::optional<WebAnswer> WebServer::Impl::refuse(evhttp_request* request) {
   const std::string request_host = header(request, "Host");
   const std::string origin = header(request, "Origin");
   const evhttp_uri* uri = evhttp_request_get_evhttp_uri(request);
@@ -315,29 +276,6 @@ std::optional<Answer> WebServer::Impl::refuse(evhttp_request* request) {
   if (!foreign) return std::nullopt;
   ++counters.refused;
   return error_answer(403, "only pages of this server on this machine may ask (Host and Origin)");
-}
-
-// What answers a GET of the path; empty: nothing does.
-std::function<Answer()> WebServer::Impl::find(const std::string& path) {
-  struct Route {
-    const char* path;
-    Answer (Impl::*answer)();
-  };
-  static constexpr Route kRoutes[] = {{"/api/v1/status", &Impl::status},
-                                      {"/api/v1/lights", &Impl::lights},
-                                      {"/api/v1/environment.exr", &Impl::environment_exr},
-                                      {"/api/v1/environment.jpg", &Impl::environment_jpg},
-                                      {"/metrics", &Impl::metrics}};
-  for (const Route& route : kRoutes)
-    if (path == route.path) return [this, &route] { return (this->*route.answer)(); };
-  for (const PageFile& file : page_files()) {
-    const std::string own_path = file.name == "index.html"     ? "/"
-                                 : file.name == "openapi.yaml" ? "/api/openapi.yaml"
-                                                               : "/" + std::string(file.name);
-    if (path == own_path)
-      return [&file] { return Answer{200, type_of(file.name), std::string(file.content)}; };
-  }
-  return {};
 }
 
 void WebServer::Impl::handle(evhttp_request* request) {
@@ -350,7 +288,7 @@ void WebServer::Impl::handle(evhttp_request* request) {
   const std::string path = given == nullptr ? "" : given;
   const bool is_record = path == "/api/v1/record";
   const bool is_stream = path == "/api/v1/stream";
-  const auto page = find(path);
+  const auto page = answers.find(path);
   if (!is_record && !is_stream && !page)
     return send(request, error_answer(404, "there is nothing at this path"));
   if (evhttp_request_get_command(request) != (is_record ? EVHTTP_REQ_POST : EVHTTP_REQ_GET)) {
@@ -358,8 +296,10 @@ void WebServer::Impl::handle(evhttp_request* request) {
     evhttp_add_header(evhttp_request_get_output_headers(request), "Allow", allowed);
     return send(request, error_answer(405, std::string("this path takes ") + allowed));
   }
-  if (is_record) return send(request, record(body_of(request)));
+  if (is_record) return send(request, answers.record(body_of(request)));
   if (is_stream) return open_stream(request);
+  counters.stream_clients = streams.count();
+  counters.stream_dropped = streams.dropped();
   send(request, page());
 }
 
@@ -374,65 +314,6 @@ void WebServer::Impl::open_stream(evhttp_request* request) {
     first = {lease->number, std::make_shared<const std::string>(std::move(text))};
   }
   streams.add(request, first);
-}
-
-Answer WebServer::Impl::status() {
-  return {200, "application/json", status_json(control.status())};
-}
-
-Answer WebServer::Impl::lights() {
-  const auto lease = snapshots.wait_newer(0, 0ms);
-  if (!lease) return error_answer(503, kNoFrame);
-  return {200, "application/json", lights_json(*lease, options.method)};
-}
-
-Answer WebServer::Impl::metrics() {
-  counters.stream_clients = streams.count();
-  counters.stream_dropped = streams.dropped();
-  const auto lease = snapshots.wait_newer(0, 0ms);
-  return {200, "text/plain; version=0.0.4; charset=utf-8",
-          metrics_text(control.status(), lease ? &*lease : nullptr, counters)};
-}
-
-Answer WebServer::Impl::environment_exr() {
-  return picture(exr_picture, "image/x-exr",
-                 [](const Snapshot& s) { return environment_to_exr(lat_long_from_polar_map(s.map)); });
-}
-
-Answer WebServer::Impl::environment_jpg() {
-  return picture(jpg_picture, "image/jpeg", [](const Snapshot& s) {
-    return encode_jpeg(kPictureSize, kPictureSize, fisheye_picture(s.map, kPictureSize));
-  });
-}
-
-Answer WebServer::Impl::picture(Picture& last, const char* type,
-                                Result<std::string> (*make)(const Snapshot&)) {
-  const auto lease = snapshots.wait_newer(0, 0ms);
-  if (!lease) return error_answer(503, kNoFrame);
-  if (last.number != lease->number || last.capture_ns != lease->capture_mono_ns) {
-    auto made = make(*lease);
-    if (!made) return error_answer(500, made.error().message);
-    last = {lease->number, lease->capture_mono_ns, std::move(made).value()};
-  }
-  return {200, type, last.body};
-}
-
-Answer WebServer::Impl::record(const std::string& body) {
-  const auto json = nlohmann::json::parse(body, nullptr, false);
-  if (!json.is_object())
-    return error_answer(400, R"(expected {"action": "start", "file": "name.mkv"} or {"action": "stop"})");
-  const auto text = [&](const char* key) {
-    const auto at = json.find(key);
-    return at != json.end() && at->is_string() ? at->get<std::string>() : std::string();
-  };
-  const std::string action = text("action");
-  if (action != "start" && action != "stop")
-    return error_answer(400, R"(action: expected "start" or "stop")");
-  const std::string file = text("file");
-  const Status done = action == "start" ? control.start_recording(file) : control.stop_recording();
-  if (done.ok()) return status();
-  // usage: the caller can do better; otherwise the state of the daemon or the disk is in the way.
-  return error_answer(done.error().kind == ErrorKind::usage ? 400 : 409, done.error().message);
 }
 
 }  // namespace lightwell

@@ -12,7 +12,6 @@ namespace lightwell {
 
 struct WebServerOptions {
   std::string listen = "127.0.0.1:8650";  // loopback; port 0: the system chooses
-  std::string method = "live";            // of the light sets: the sampler's name
 };
 
 // The page, the interface of interface/openapi.yaml, the event stream and the metrics, over HTTP (libevent),

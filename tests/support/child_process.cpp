@@ -7,33 +7,76 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 #include "tests/support/eventually.h"
+#include "tests/support/temporary_folder.h"
 
 namespace lightwell::test {
 
-ChildProcess::ChildProcess(std::vector<std::string> command, std::filesystem::path stderr_file, Limits limits)
+namespace {
+
+std::vector<char*> pointers(std::vector<std::string>& words) {
+  std::vector<char*> list;
+  for (std::string& word : words) list.push_back(word.data());
+  list.push_back(nullptr);
+  return list;
+}
+
+// Ours with the changes, made before the fork: other threads of the test may hold what setenv needs.
+std::vector<std::string> changed_environment(const std::vector<std::string>& changes) {
+  std::vector<std::string> all;
+  for (char** entry = environ; *entry != nullptr; ++entry) all.emplace_back(*entry);
+  for (const std::string& change : changes) {
+    const std::string name = change.substr(0, change.find('=')) + "=";
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [&](const std::string& entry) { return entry.starts_with(name); }),
+              all.end());
+    if (change.find('=') != std::string::npos) all.push_back(change);
+  }
+  return all;
+}
+
+std::string whole_text(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+ChildProcess::ChildProcess(std::vector<std::string> command, std::filesystem::path stderr_file,
+                           const Options& options)
     : stderr_file_(std::move(stderr_file)) {
-  std::vector<char*> arguments;
-  for (std::string& word : command) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  const int log = ::open(stderr_file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  const std::vector<char*> arguments = pointers(command);
+  std::vector<std::string> environment = changed_environment(options.environment);
+  const std::vector<char*> variables = pointers(environment);
+  const auto open_for_writing = [](const std::filesystem::path& file) {
+    return ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  };
+  const int in = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const int err = open_for_writing(stderr_file_);
+  const int out = options.stdout_file.empty() ? -1 : open_for_writing(options.stdout_file);
   pid_ = ::fork();
   if (pid_ == 0) {
-    ::dup2(log, STDERR_FILENO);
-    if (limits.file_bytes) {
-      ::signal(SIGXFSZ,
-               SIG_IGN);  // stays ignored across exec: writing past the limit fails instead of killing
-      const rlimit limit{*limits.file_bytes, *limits.file_bytes};
+    ::dup2(in, STDIN_FILENO);
+    ::dup2(err, STDERR_FILENO);
+    if (out >= 0) ::dup2(out, STDOUT_FILENO);
+    if (options.file_bytes) {
+      // Stays ignored across exec: writing past the limit fails instead of killing.
+      ::signal(SIGXFSZ, SIG_IGN);
+      const rlimit limit{*options.file_bytes, *options.file_bytes};
       ::setrlimit(RLIMIT_FSIZE, &limit);
     }
-    ::execvp(arguments[0], arguments.data());
+    ::execvpe(arguments[0], arguments.data(), variables.data());
     ::_exit(127);
   }
-  ::close(log);
+  for (const int fd : {in, err, out})
+    if (fd >= 0) ::close(fd);
 }
 
 ChildProcess::~ChildProcess() {
@@ -62,10 +105,13 @@ std::optional<int> ChildProcess::wait_for_end(int seconds) {
   return end_;
 }
 
+int ChildProcess::wait() {
+  while (!poll_end()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  return *end_;
+}
+
 std::string ChildProcess::stderr_text() const {
-  std::ostringstream text;
-  text << std::ifstream(stderr_file_).rdbuf();
-  return text.str();
+  return whole_text(stderr_file_);
 }
 
 std::optional<std::string> ChildProcess::wait_for_line(const std::string& marker) {
@@ -78,6 +124,17 @@ std::optional<std::string> ChildProcess::wait_for_line(const std::string& marker
     return rest.has_value() || !running();
   });
   return rest;
+}
+
+ProcessResult run_process(const std::string& program, const std::vector<std::string>& arguments) {
+  const TemporaryFolder folder;
+  std::vector<std::string> command = {program};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  ChildProcess::Options options;
+  options.stdout_file = folder.path() / "out";
+  ChildProcess process(command, folder.path() / "err", options);
+  const int exit_code = process.wait();
+  return {exit_code, whole_text(options.stdout_file), process.stderr_text()};
 }
 
 }  // namespace lightwell::test

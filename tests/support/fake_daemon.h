@@ -102,6 +102,7 @@ inline void publish(SnapshotChannel& channel, std::uint64_t number, float sun_az
   snapshot.capture_utc_ns = utc_now_ns();
   std::strcpy(snapshot.calibration_id.data(), "0123456789abcdef");
   snapshot.delay_frames = 4;
+  snapshot.method = "havran";
   paint_sky(snapshot, sun_azimuth_rad, 72);
   channel.end_write();
 }

@@ -5,38 +5,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <random>
 
 #include "lighting/radiometer.h"
+#include "tests/support/log_camera.h"
 #include "tests/support/reference_radiometer.h"
 
 namespace {
 
 using namespace lightwell;
 
-Calibration camera(int width, int height, int bits) {
-  Calibration c;
-  const double side = std::min(width, height);
-  c.lens = {{width, height},
-            {side / kPi * 0.97, side / kPi * 0.98},
-            {(width - 1) / 2.0 + 0.13, (height - 1) / 2.0 - 0.21},
-            {-0.01, 0.002, 0, 0},
-            kPi / 2};
-  const double top = std::ldexp(1.0, bits) - 1;
-  const double b = (top + 1) / (26 * std::log(2.0));
-  c.response = {LogResponse{5 * b, b, 0}, bits, top * 0.02, top - 3, 10000};
-  c.flat.vignetting = {-0.12, 0.01, -0.002};
-  return c;
-}
-
 // 0 where the map agrees with double within the kernel's 5e-4 in every bin.
 int compare(const FrameFormat& format, int bits, const PolarGrid& grid, Isa isa) {
-  const Calibration c = camera(format.width, format.height, bits);
-  std::mt19937 random(7);
-  std::uniform_int_distribution<int> code(static_cast<int>(c.response.black_code), (1 << bits) - 1);
-  std::vector<std::uint16_t> codes(static_cast<std::size_t>(format.width) *
-                                   static_cast<std::size_t>(format.height));
-  for (auto& v : codes) v = static_cast<std::uint16_t>(code(random));
+  const Calibration c = test::log_camera(format.width, format.height, bits);
+  const auto codes = test::random_codes(c, format);
   auto radiometer = Radiometer::create(c, format, {grid, isa});
   if (!radiometer) {
     std::printf("%s\n", radiometer.error().message.c_str());

@@ -44,12 +44,12 @@ class Chain : public testing::Test {
   }
 
   // configuration: TOML beside what keeps tests apart
-  void start_daemon(const std::string& configuration = "", ChildProcess::Limits limits = {}) {
+  void start_daemon(const std::string& configuration = "", const ChildProcess::Options& options = {}) {
     write_configuration(configuration);
     daemon_ = std::make_unique<ChildProcess>(
         Words{program("lightwelld"), "--config", config_file().string(), "--source", "aravis:" + address_,
               "--calibration", calibration().string(), "--record-dir", folder_.path().string()},
-        folder_.path() / "daemon.log", limits);
+        folder_.path() / "daemon.log", options);
     const auto url = daemon_->wait_for_line("page: http://");
     ASSERT_TRUE(url) << daemon_->stderr_text();
     http_ = url->substr(0, url->find('/'));

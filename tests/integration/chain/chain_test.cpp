@@ -116,9 +116,9 @@ TEST_F(Chain, TerminationClosesTheTake) {
 
 TEST_F(Chain, FullDiskEndsTheTakeAndNotTheLight) {
   start_camera({"--scenario", "static", "--size", "320x240", "--rate", "30"});
-  ChildProcess::Limits limits;
-  limits.file_bytes = 8'000'000;  // 52 frames, three clusters of half a second
-  start_daemon("", limits);
+  ChildProcess::Options options;
+  options.file_bytes = 8'000'000;  // 52 frames, three clusters of half a second
+  start_daemon("", options);
   ASSERT_TRUE(published_reaches(5));
   ASSERT_EQ(post("/api/v1/record", R"({"action": "start", "file": "take.mkv"})"), 200);
   ASSERT_TRUE(eventually([&] { return status().value("alarm", "") != ""; })) << status();
@@ -133,10 +133,12 @@ TEST_F(Chain, ReloadChangesTheLightsWithoutAPause) {
   start_camera({"--scenario", "static", "--size", "320x240", "--rate", "30"});
   start_daemon();
   ASSERT_TRUE(published_reaches(10));
-  write_configuration("[lights]\ncount = 9\nclusters = 0\n");
+  EXPECT_EQ(get("/api/v1/lights").at("method"), "havran");
+  write_configuration("[lights]\ncount = 9\nclusters = 0\nsampler = \"standard\"\n");
   daemon_->send(SIGHUP);
   EXPECT_TRUE(eventually([&] { return get("/api/v1/lights").at("lights").size() == 9; }))
       << daemon_->stderr_text();
+  EXPECT_EQ(get("/api/v1/lights").at("method"), "standard");
   EXPECT_EQ(status().at("capture").at("reconnects"), 0);
   write_configuration("[lights]\ncount = 0\n");
   daemon_->send(SIGHUP);

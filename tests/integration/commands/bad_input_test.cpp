@@ -81,6 +81,36 @@ TEST_F(BadInput, SequencesThatAreNotWholeAreBadInput) {
   expect_lights(path("s%d.exr"), {"--count", "4"}, 3, "s3.exr");
 }
 
+TEST_F(BadInput, AFileWhoseNameLooksLikeASequenceIsAFile) {
+  ASSERT_TRUE(write_environment(path("sky_%d.exr"), sky(8, 4)));
+  const auto run = lightwell({"lights", path("sky_%d.exr"), "--count", "4", "--out", path("l.json")});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(std::filesystem::exists(path("l.json")));
+}
+
+TEST_F(BadInput, StandardOutputHasNoShortName) {
+  expect({"lights", path("sky.exr"), "--count", "4", "--out", "-"}, 2, "/dev/stdout");
+  EXPECT_FALSE(std::filesystem::exists("-"));
+}
+
+TEST_F(BadInput, PicturesThatAreNotTwiceAsWideAsHighAreSaid) {
+  for (const auto& [width, height] : {std::pair(16, 16), {8, 16}, {64, 16}}) {
+    ASSERT_TRUE(write_environment(path("square.exr"), sky(width, height)));
+    const auto run =
+        lightwell({"lights", path("square.exr"), "--count", "4", "--out", path("l.json"), "--json"});
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_THAT(run.err, HasSubstr("square.exr: " + std::to_string(width) + "x" + std::to_string(height)));
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  }
+  for (const auto& [width, height] : {std::pair(1, 1), {3, 2}, {33, 17}, {1000, 500}}) {
+    ASSERT_TRUE(write_environment(path("odd.exr"), sky(width, height)));
+    const auto run =
+        lightwell({"lights", path("odd.exr"), "--count", "4", "--out", path("l.json"), "--json"});
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_EQ(run.err, "");
+  }
+}
+
 TEST_F(BadInput, LightSetsThatAreNoneAreBadInput) {
   const std::string sky = path("sky.exr");
   expect({"evaluate", sky, path("absent.json")}, 3, "absent.json");

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "interface/environment_io.h"
-#include "tests/support/process.h"
+#include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
 
 namespace lightwell::test {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "interface/atomic_file.h"
-#include "tests/support/process.h"
+#include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
 
 namespace lightwell::test {

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <csignal>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <thread>
 
+#include "interface/atomic_file.h"
 #include "interface/environment_io.h"
 #include "interface/light_set_io.h"
 #include "render/egl_context.h"
@@ -16,7 +19,8 @@
 namespace lightwell {
 namespace {
 
-using test::Program;
+using test::ChildProcess;
+using test::start_render;
 
 class Command : public ::testing::Test {
  protected:
@@ -35,9 +39,9 @@ class Command : public ::testing::Test {
   }
   void expect_refused(const std::vector<std::string>& words, int exit_code, const std::string& named,
                       const std::vector<std::string>& environment = {}) {
-    Program program(folder_.path(), words, environment);
+    ChildProcess program = start_render(folder_.path(), words, environment);
     EXPECT_EQ(program.wait(), exit_code) << named;
-    const std::string errors = program.errors();
+    const std::string errors = program.stderr_text();
     EXPECT_NE(errors.find(named), std::string::npos) << errors;
     EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
   }
@@ -48,9 +52,10 @@ class Command : public ::testing::Test {
 };
 
 TEST_F(Command, WritesFramesNumberedFromZeroAndTheStatisticsOfTheContract) {
-  Program program(folder_.path(), arguments({"--frames", "2", "--out", file("f_%04d.exr"), "--out",
-                                             file("last.png"), "--stats", file("stats.json")}));
-  ASSERT_EQ(program.wait(), 0) << program.errors();
+  ChildProcess program =
+      start_render(folder_.path(), arguments({"--frames", "2", "--out", file("f_%04d.exr"), "--out",
+                                              file("last.png"), "--stats", file("stats.json")}));
+  ASSERT_EQ(program.wait(), 0) << program.stderr_text();
   EXPECT_TRUE(std::filesystem::exists(file("f_0000.exr")));
   EXPECT_TRUE(std::filesystem::exists(file("f_0001.exr")));
   EXPECT_FALSE(std::filesystem::exists(file("f_0002.exr")));
@@ -75,10 +80,11 @@ TEST_F(Command, AUniformEnvironmentReturnsAlbedoAndTheLowerHalfAddsNothingToTheG
   ASSERT_TRUE(
       write_environment(file("sky.exr"), LatLongImage{64, 32, std::vector<Rgb>(64 * 32, Rgb::Ones())}));
   for (const char* part : {"--hemisphere", "--sphere"}) {
-    Program program(folder_.path(),
-                    {"--scene", LIGHTWELL_STAGE, "--environment", file("sky.exr"), part, "--lights", "64",
-                     "--headless", "--size", "32x24", "--shadow-size", "64", "--out", file("sky_out.exr")});
-    ASSERT_EQ(program.wait(), 0) << program.errors();
+    ChildProcess program =
+        start_render(folder_.path(),
+                     {"--scene", LIGHTWELL_STAGE, "--environment", file("sky.exr"), part, "--lights", "64",
+                      "--headless", "--size", "32x24", "--shadow-size", "64", "--out", file("sky_out.exr")});
+    ASSERT_EQ(program.wait(), 0) << program.stderr_text();
     const auto picture = read_environment(file("sky_out.exr"));
     ASSERT_TRUE(picture.ok());
     // 64 lights of a uniform sky err by less than this on a normal; the objects hide a little of it.
@@ -90,10 +96,11 @@ TEST_F(Command, ASpinningEnvironmentTurnsTheShadows) {
   LatLongImage lamp{64, 32, std::vector<Rgb>(64 * 32, Rgb::Zero())};
   lamp.at(10, 12) = Rgb::Constant(1000);
   ASSERT_TRUE(write_environment(file("lamp.exr"), lamp));
-  Program program(folder_.path(),
-                  {"--scene", LIGHTWELL_STAGE, "--environment", file("lamp.exr"), "--lights", "1", "--spin",
-                   "180", "--frames", "3", "--headless", "--size", "32x24", "--out", file("l_%d.exr")});
-  ASSERT_EQ(program.wait(), 0) << program.errors();
+  ChildProcess program =
+      start_render(folder_.path(),
+                   {"--scene", LIGHTWELL_STAGE, "--environment", file("lamp.exr"), "--lights", "1", "--spin",
+                    "180", "--frames", "3", "--headless", "--size", "32x24", "--out", file("l_%d.exr")});
+  ASSERT_EQ(program.wait(), 0) << program.stderr_text();
   const auto first = read_environment(file("l_0.exr"));
   const auto half = read_environment(file("l_1.exr"));
   const auto whole = read_environment(file("l_2.exr"));
@@ -107,8 +114,9 @@ TEST_F(Command, ASpinningEnvironmentTurnsTheShadows) {
 }
 
 TEST_F(Command, FewerShadowMapsThanLightsFoldTheLights) {
-  Program program(folder_.path(), arguments({"--shadow-maps", "1", "--stats", file("stats.json")}));
-  ASSERT_EQ(program.wait(), 0) << program.errors();
+  ChildProcess program =
+      start_render(folder_.path(), arguments({"--shadow-maps", "1", "--stats", file("stats.json")}));
+  ASSERT_EQ(program.wait(), 0) << program.stderr_text();
   EXPECT_EQ(nlohmann::json::parse(read_text_file(file("stats.json")).value())["lights"], 1);
 }
 
@@ -149,11 +157,11 @@ TEST_F(Command, WithoutADisplayAndAPurposeItSaysSo) {
 }
 
 TEST_F(Command, WithoutADisplayButAPurposeItRendersOffScreen) {
-  Program program(folder_.path(),
-                  {"--scene", LIGHTWELL_STAGE, "--light-set", lights_, "--size", "16x12", "--shadow-size",
-                   "16", "--out", file("a.png")},
-                  {"DISPLAY", "WAYLAND_DISPLAY"});
-  EXPECT_EQ(program.wait(), 0) << program.errors();
+  ChildProcess program = start_render(folder_.path(),
+                                      {"--scene", LIGHTWELL_STAGE, "--light-set", lights_, "--size", "16x12",
+                                       "--shadow-size", "16", "--out", file("a.png")},
+                                      {"DISPLAY", "WAYLAND_DISPLAY"});
+  EXPECT_EQ(program.wait(), 0) << program.stderr_text();
   EXPECT_TRUE(std::filesystem::exists(file("a.png")));
 }
 
@@ -163,17 +171,17 @@ TEST_F(Command, WithoutAnEglDriverItSaysSoInOneLine) {
 }
 
 TEST_F(Command, ATerminationSignalEndsInOrderWithThePictureWritten) {
-  Program program(folder_.path(),
-                  arguments({"--seconds", "600", "--out", file("f_%d.png"), "--out", file("last.exr")}));
-  while (!std::filesystem::exists(file("f_0.png")) && !program.ended())
+  ChildProcess program = start_render(
+      folder_.path(), arguments({"--seconds", "600", "--out", file("f_%d.png"), "--out", file("last.exr")}));
+  while (!std::filesystem::exists(file("f_0.png")) && program.running())
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  program.terminate();
-  EXPECT_EQ(program.wait(), 0) << program.errors();
+  program.send(SIGTERM);
+  EXPECT_EQ(program.wait(), 0) << program.stderr_text();
   EXPECT_TRUE(std::filesystem::exists(file("last.exr")));
 }
 
 TEST_F(Command, HelpEndsWell) {
-  Program program(folder_.path(), {"--help"});
+  ChildProcess program = start_render(folder_.path(), {"--help"});
   EXPECT_EQ(program.wait(), 0);
 }
 

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <csignal>
+#include <thread>
+
 #include "interface/dds_topics.h"
 #include "interface/environment_io.h"
 #include "render/egl_context.h"
@@ -13,8 +16,9 @@
 namespace lightwell {
 namespace {
 
+using test::ChildProcess;
 using test::eventually;
-using test::Program;
+using test::start_render;
 
 // A daemon as far as a renderer can tell.
 struct FakeProbe {
@@ -57,12 +61,14 @@ class Live : public ::testing::Test {
 };
 
 TEST_F(Live, RendersTheLightThatIsPublishedThoughItStartedFirst) {
-  Program program(folder_.path(), arguments({"--frames", "2", "--out", file("f_%d.exr")}));
-  ASSERT_TRUE(eventually([&] { return program.errors().find("waiting for light") != std::string::npos; }))
-      << program.errors();
+  ChildProcess program =
+      start_render(folder_.path(), arguments({"--frames", "2", "--out", file("f_%d.exr")}));
+  ASSERT_TRUE(eventually([&] {
+    return program.stderr_text().find("waiting for light") != std::string::npos;
+  })) << program.stderr_text();
   FakeProbe probe(dds_);
-  ASSERT_TRUE(eventually([&] { return probe.send(), program.ended().has_value(); }));
-  EXPECT_EQ(program.wait(), 0) << program.errors();
+  ASSERT_TRUE(eventually([&] { return probe.send(), !program.running(); }));
+  EXPECT_EQ(program.wait(), 0) << program.stderr_text();
   // Bottom row: the stage's matte ground, which no shadow reaches from straight above.
   const auto picture = read_environment(file("f_1.exr"));
   ASSERT_TRUE(picture.ok()) << picture.error().message;
@@ -71,15 +77,16 @@ TEST_F(Live, RendersTheLightThatIsPublishedThoughItStartedFirst) {
 }
 
 TEST_F(Live, KeepsTheLastLightWhenTheDaemonDiesAndGoesOnWhenItReturns) {
-  Program program(folder_.path(), arguments({"--out", file("f_%d.png"), "--out", file("last.exr")}));
+  ChildProcess program =
+      start_render(folder_.path(), arguments({"--out", file("f_%d.png"), "--out", file("last.exr")}));
   {
     FakeProbe probe(dds_);
     ASSERT_TRUE(eventually([&] { return probe.send(), std::filesystem::exists(file("f_0.png")); }))
-        << program.errors();
+        << program.stderr_text();
   }
-  ASSERT_TRUE(eventually([&] { return program.errors().find("keeping the last") != std::string::npos; }))
-      << program.errors();
-  EXPECT_FALSE(program.ended().has_value());
+  ASSERT_TRUE(eventually([&] { return program.stderr_text().find("keeping the last") != std::string::npos; }))
+      << program.stderr_text();
+  EXPECT_TRUE(program.running());
   const auto last_picture = [&] {
     int i = 0;
     while (std::filesystem::exists(file("f_" + std::to_string(i) + ".png"))) ++i;
@@ -87,16 +94,17 @@ TEST_F(Live, KeepsTheLastLightWhenTheDaemonDiesAndGoesOnWhenItReturns) {
   };
   const int before = last_picture();
   FakeProbe probe(dds_);
-  ASSERT_TRUE(eventually([&] { return probe.send(), last_picture() > before; })) << program.errors();
-  program.terminate();
-  EXPECT_EQ(program.wait(), 0) << program.errors();
+  ASSERT_TRUE(eventually([&] { return probe.send(), last_picture() > before; })) << program.stderr_text();
+  program.send(SIGTERM);
+  EXPECT_EQ(program.wait(), 0) << program.stderr_text();
   EXPECT_TRUE(std::filesystem::exists(file("last.exr")));
 }
 
 TEST_F(Live, NoLightInTheGivenTimeIsAFailureThatSaysSo) {
-  Program program(folder_.path(), arguments({"--seconds", "0.5", "--out", file("a.png")}));
+  ChildProcess program =
+      start_render(folder_.path(), arguments({"--seconds", "0.5", "--out", file("a.png")}));
   EXPECT_EQ(program.wait(), 1);
-  EXPECT_NE(program.errors().find("no light arrived"), std::string::npos) << program.errors();
+  EXPECT_NE(program.stderr_text().find("no light arrived"), std::string::npos) << program.stderr_text();
   EXPECT_FALSE(std::filesystem::exists(file("a.png")));
 }
 

@@ -97,10 +97,11 @@ TEST_F(WindowOnAVirtualDisplay, TheProgramShowsThirtyFramesAndEnds) {
   const std::string lights = (folder.path() / "lights.json").string();
   ASSERT_TRUE(write_light_set(lights, light_set({{Vec3f(1, 2, 1), Rgb::Constant(1000)}})));
   const std::string picture = (folder.path() / "last.png").string();
-  Program program(folder.path(), {"--scene", LIGHTWELL_STAGE, "--light-set", lights, "--size", "64x48",
-                                  "--shadow-size", "32", "--frames", "30", "--out", picture});
-  EXPECT_EQ(program.wait(), 0) << program.errors();
-  EXPECT_EQ(program.errors(), "");
+  ChildProcess program =
+      start_render(folder.path(), {"--scene", LIGHTWELL_STAGE, "--light-set", lights, "--size", "64x48",
+                                   "--shadow-size", "32", "--frames", "30", "--out", picture});
+  EXPECT_EQ(program.wait(), 0) << program.stderr_text();
+  EXPECT_EQ(program.stderr_text(), "");
   EXPECT_TRUE(std::filesystem::exists(picture));
 }
 

@@ -111,6 +111,8 @@ TEST_F(TakesCommand, RepairMakesACompleteTake) {
   EXPECT_EQ(info.at("complete"), true);
   EXPECT_EQ(info.at("damage"), "");
   expect_one_line(run({"repair", broken.string(), "--out", out.string()}), 1, "exists");
+  expect_one_line(run({"repair", broken.string(), "--out", "-"}), 2, "/dev/stdout");
+  expect_one_line(run({"repair", broken.string(), "--out", "/nonexistent/a.mkv"}), 1, "/nonexistent/a.mkv:");
 }
 
 TEST_F(TakesCommand, RecordFromASourceKeepsItsFramesBitForBit) {
@@ -151,6 +153,11 @@ TEST_F(TakesCommand, RecordRefusesWhatCannotWorkBeforeAnyFrame) {
   expect_one_line(run({"record", "--seconds", "1", "--out", out, "--source", "recording:" + out}), 3,
                   "out.mkv");
   EXPECT_EQ(run({"record", "--seconds", "1", "--out", out, "--source", source, "--codec", "mp4"}).code, 2);
+  expect_one_line(run({"record", "--seconds", "1", "--out", "-", "--source", source}), 2, "/dev/stdout");
+  // A daemon's rule, said before it is asked; on its own the command writes under any name.
+  for (const char* name : {"prüfung.mkv", "a/b\xff.mkv", "take.mp4", "-a.mkv"})
+    expect_one_line(run({"record", "--seconds", "1", "--out", name}), 2,
+                    "--out " + std::string(name) + ": the daemon takes plain names only");
   // Nobody listens on the discard port of an address of our own.
   expect_one_line(run({"record", "--seconds", "1", "--out", out, "--daemon", "127.83.11.5:9"}), 1,
                   "127.83.11.5:9");

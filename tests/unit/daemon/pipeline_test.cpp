@@ -72,7 +72,10 @@ class HandFedSource final : public CaptureSource {
     } while (mono_now_ns() < end_ns);
     return {};
   }
-  void stop() noexcept override { stopped = true; }
+  void stop() noexcept override {
+    while (dead) std::this_thread::yield();
+    stopped = true;
+  }
   [[nodiscard]] SourceState state() const noexcept override { return SourceState::streaming; }
   [[nodiscard]] std::string describe() const override { return "hand-fed"; }
   [[nodiscard]] CaptureCounters counters() const noexcept override { return {}; }
@@ -97,6 +100,7 @@ class HandFedSource final : public CaptureSource {
     return owned_.back().get();
   }
   std::atomic<bool> stopped{false};
+  std::atomic<bool> dead{false};  // stop does not return until it is false
 
  private:
   std::atomic<bool> held_{false}, waiting_{false};
@@ -115,8 +119,10 @@ struct CountingSink final : FrameSink {
 
 class PipelineTest : public testing::Test {
  protected:
-  std::shared_ptr<FramePath> path(int size) {
-    return std::make_shared<FramePath>(calibration_for(size), small_options(), snapshots_);
+  std::shared_ptr<FramePath> path(int size, const char* method = "live") {
+    FramePathOptions options = small_options();
+    options.method = method;
+    return std::make_shared<FramePath>(calibration_for(size), options, snapshots_);
   }
   SnapshotChannel::Lease published(std::uint64_t after) {
     return snapshots_.wait_newer(after, std::chrono::seconds(20));
@@ -169,14 +175,35 @@ TEST_F(PipelineTest, FramesOfAnotherSizeAreSaidAndSurvived) {
 TEST_F(PipelineTest, ReplacementGoesOnCountingAndStopsTheOldSource) {
   ASSERT_TRUE(pipeline_.start(source_, path(64)));
   source_->give(kFormat, 1500);
-  ASSERT_TRUE(published(0));
+  EXPECT_EQ(published(0)->method, "live");
   auto second = std::make_shared<HandFedSource>();
-  ASSERT_TRUE(pipeline_.replace(second, path(32)));
+  ASSERT_TRUE(pipeline_.replace(second, path(32, "other")));
   second->give({32, 32, PixelFormat::mono12}, 1500);
   const auto snapshot = published(1);
   ASSERT_TRUE(snapshot);
   EXPECT_EQ(snapshot->number, 2u);
+  EXPECT_EQ(snapshot->method, "other");
+  EXPECT_TRUE(eventually([&] { return source_->stopped.load(); }));
+}
+
+TEST_F(PipelineTest, ADeadSourceThatIsReplacedHoldsUpNothing) {
+  ASSERT_TRUE(pipeline_.start(source_, path(64)));
+  source_->give(kFormat, 1500);
+  ASSERT_TRUE(published(0));
+  source_->dead = true;
+  auto second = std::make_shared<HandFedSource>();
+  ASSERT_TRUE(pipeline_.replace(second, path(64)));
+  for (std::uint64_t i = 1; i <= 3; ++i) {
+    second->give(kFormat, 1500);
+    EXPECT_TRUE(published(i));
+  }
+  const std::uint64_t before = pipeline_.heartbeat();
+  EXPECT_TRUE(eventually([&] { return pipeline_.heartbeat() > before + 2; }));
+  EXPECT_FALSE(source_->stopped);
+  source_->dead = false;
+  pipeline_.stop();  // waits for the source that was replaced
   EXPECT_TRUE(source_->stopped);
+  EXPECT_TRUE(second->stopped);
 }
 
 TEST_F(PipelineTest, AFrameWithoutAnExposureIsSaidAndSurvived) {
@@ -204,7 +231,7 @@ TEST_F(PipelineTest, AReplacementThatStillWaitsKeepsItsSource) {
   ASSERT_TRUE(pipeline_.replace(nullptr, path(32)));
   source_->go_on();
   ASSERT_TRUE(published(0));
-  EXPECT_TRUE(source_->stopped);
+  EXPECT_TRUE(eventually([&] { return source_->stopped.load(); }));
   EXPECT_EQ(pipeline_.view().source, second);
 }
 

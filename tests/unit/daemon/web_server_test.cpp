@@ -31,8 +31,7 @@ using testing::HasSubstr;
 
 class WebServerTest : public testing::Test {
  protected:
-  WebServerTest()
-      : server_(WebServer::start({.listen = "127.0.0.1:0", .method = "havran"}, channel_, control_).value()) {
+  WebServerTest() : server_(WebServer::start({.listen = "127.0.0.1:0"}, channel_, control_).value()) {
     control_.change([](DaemonStatus& status) {
       status.version = "0.1.0";
       status.source = "aravis:127.0.0.1";
@@ -232,7 +231,6 @@ TEST(FisheyePicture, AnyMapGivesAPicture) {
       PolarMap map = PolarMap::make({.rings = 1, .sectors = 1, .theta_max_rad = 1.7}, channels);
       std::fill(map.radiance.begin(), map.radiance.end(), level);
       EXPECT_EQ(fisheye_picture(map, 7).size(), 147u);
-      EXPECT_TRUE(lat_long_from_polar_map(map).at(0, 0).isFinite().all());
     }
 }
 

@@ -256,13 +256,18 @@ TEST(DdsDomain, WrongOptionsAreNamed) {
     EXPECT_EQ(result.error().kind, ErrorKind::usage);
     return result.error().message;
   };
-  EXPECT_THAT(message({.domain = 233, .interface = "lo"}), testing::HasSubstr("233"));
+  EXPECT_THAT(message({.domain = kMaxDdsDomain + 1, .interface = "lo"}), testing::HasSubstr("233"));
   EXPECT_THAT(message({.domain = -1, .interface = "lo"}), testing::HasSubstr("-1"));
   EXPECT_THAT(message({.domain = 0, .interface = "nosuch0"}), testing::HasSubstr("nosuch0"));
   const auto open = domain();
   DdsOptions other = own_domain();
   other.interface = "127.0.0.1";
   EXPECT_THAT(message(other), testing::HasSubstr("already open"));
+}
+
+TEST(DdsDomain, TheLastOfTheRangeOpens) {
+  const auto last = DdsDomain::open({.domain = kMaxDdsDomain, .interface = "lo"});
+  EXPECT_TRUE(last) << last.error().message;
 }
 
 TEST(DdsDomain, IsSharedInsideAProcessAndClosesWithItsLastUser) {

@@ -58,7 +58,7 @@ TEST(EnvironmentIo, WrittenImageComesBackBitForBit) {
     const auto back = read_environment(folder.path() / "a.exr");
     ASSERT_TRUE(back) << back.error().message;
     EXPECT_TRUE(same(back->image, image));
-    EXPECT_EQ(back->repaired("a.exr"), "");
+    EXPECT_EQ(back->not_finite + back->negative, 0u);
   }
 }
 
@@ -73,8 +73,26 @@ TEST(EnvironmentIo, NotFiniteAndNegativeValuesAreCountedAndReadAsZero) {
   EXPECT_EQ(back.negative, 1u);
   EXPECT_TRUE((back.image.pixels[0] == Rgb(0, 0, 1)).all());
   EXPECT_TRUE((back.image.pixels[1] == Rgb(0, 0, 3)).all());
-  EXPECT_EQ(back.repaired("bad.exr"),
+  EXPECT_EQ(back.remark("bad.exr"),
             "bad.exr: 3 values are NaN or infinite, 1 values are negative; read as 0");
+}
+
+TEST(EnvironmentIo, ASizeThatIsNotTwoToOneIsSaidInTheSameLine) {
+  const auto remark = [](int width, int height, std::uint64_t negative = 0) {
+    EnvironmentImage environment;
+    environment.image = random_image(width, height);
+    environment.negative = negative;
+    return environment.remark("a.exr");
+  };
+  for (const auto& [w, h] : {std::pair{1, 1}, {2, 1}, {3, 1}, {33, 16}, {33, 17}, {1000, 500}, {1000, 490}})
+    EXPECT_EQ(remark(w, h), "") << w << " " << h;
+  for (const auto& [w, h] : {std::pair{16, 16}, {400, 300}, {300, 400}, {600, 100}, {7, 2}})
+    EXPECT_EQ(remark(w, h), "a.exr: " + std::to_string(w) + "x" + std::to_string(h) +
+                                " is not 2:1; read as a latitude–longitude image all the same");
+  EXPECT_EQ(
+      remark(16, 16, 4),
+      "a.exr: 16x16 is not 2:1; read as a latitude–longitude image all the same; 4 values are negative; "
+      "read as 0");
 }
 
 TEST(EnvironmentIo, WritingIntoAMissingFolderFails) {

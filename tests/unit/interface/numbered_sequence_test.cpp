@@ -51,6 +51,13 @@ TEST_F(NumberedSequence, GapsAndNothingAreBadInput) {
   EXPECT_EQ(names("e%d_%d.exr"), Names{"bad"});
 }
 
+TEST_F(NumberedSequence, AFileOfTheVeryNameIsNoSequence) {
+  touch("e1.exr");
+  EXPECT_TRUE(is_numbered_sequence(pattern("e%d.exr")));
+  touch("e%d.exr");
+  EXPECT_FALSE(is_numbered_sequence(pattern("e%d.exr")));
+}
+
 TEST(IsNumberedSequence, KnowsItsTwoForms) {
   EXPECT_TRUE(is_numbered_sequence("a/e_%04d.exr"));
   EXPECT_TRUE(is_numbered_sequence("%d"));

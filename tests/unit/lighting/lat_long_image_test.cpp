@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <random>
+#include <tuple>
 
 namespace lightwell {
 namespace {
@@ -133,6 +134,44 @@ TEST(ResamplePolar, TheSameGridGivesTheSameMap) {
   for (std::size_t i = 0; i < map.radiance.size(); ++i)
     EXPECT_NEAR(out.radiance[i], map.radiance[i],
                 4e-7f * map.radiance[i]);  // float rounding of the solid angles
+}
+
+TEST(LatLongFromPolarMap, UndoesPolarMapFromLatLong) {
+  const LatLongImage image = random_image(36, 18, 5);
+  const LatLongImage back = lat_long_from_polar_map(polar_map_from_lat_long(image, false));
+  ASSERT_EQ(back.width, 36);
+  ASSERT_EQ(back.height, 18);
+  // Its own flux divided by its own solid angle: one rounding.
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    EXPECT_LT((back.pixels[i] - image.pixels[i]).abs().maxCoeff(), 1.2e-7f) << i;
+}
+
+TEST(LatLongFromPolarMap, AHemisphereIsBlackBelowAndKeepsItsEnergyAbove) {
+  for (const auto& [rings, sectors, theta_max] :
+       {std::tuple(90, 360, kPi / 2), {9, 35, kPi / 2}, {1, 1, kPi / 2}, {7, 12, kPi}, {30, 61, kPi}}) {
+    PolarMap map = PolarMap::make({rings, sectors, theta_max}, 3);
+    std::mt19937 generator(6);
+    std::uniform_real_distribution<float> value(0.0f, 5.0f);
+    for (float& radiance : map.radiance) radiance = value(generator);
+    const LatLongImage image = lat_long_from_polar_map(map);
+    Rgbd total = Rgbd::Zero();
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        total += image.at(x, y).cast<double>() * image.pixel_solid_angle_sr(y);
+        if ((y + 0.5) / image.height * kPi > theta_max) {
+          EXPECT_TRUE((image.at(x, y) == Rgb::Zero()).all());
+        }
+      }
+    EXPECT_LT(relative(total, total_illuminance(map)), kFloatRounding) << rings << " " << sectors;
+  }
+}
+
+TEST(LatLongFromPolarMap, AnyEdgeAndSizeGivesAPicture) {
+  for (const double theta_max : {0.01, 1.0, 1.7, 3.1}) {
+    PolarMap map = PolarMap::make({1, 1, theta_max}, 1);
+    map.radiance[0] = 1e30f;
+    for (const Rgb& pixel : lat_long_from_polar_map(map).pixels) EXPECT_TRUE(pixel.isFinite().all());
+  }
 }
 
 TEST(ResamplePolar, CountsOfClippedPixelsAreKept) {

@@ -49,6 +49,41 @@ TEST(Lens, RoundTripIsBelowANanoradianInsideTheField) {
   }
 }
 
+TEST(Lens, JacobianIsTheSlopeOfTheProjection) {
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal;
+  for (const Lens& lens : lenses())
+    for (int i = 0; i < 200; ++i) {
+      Vec3d d(normal(random), normal(random), normal(random));
+      if (i < 3) d = {i == 1 ? 1e-12 : 0, 0, 2};  // on the axis, where the formula changes
+      const LensJacobian j = project_with_jacobian(lens, d);
+      EXPECT_EQ(j.pixel, lens.project(d));
+      // Central differences err by about h² times the third derivative: relative 1e-6 of the largest entry.
+      const auto expect_slope = [&](const Vec2d& plus, const Vec2d& minus, double h, const Vec2d& slope,
+                                    double largest) {
+        EXPECT_LT(((plus - minus) / (2 * h) - slope).norm(), 1e-6 * std::max(1.0, largest));
+      };
+      const double h = 1e-5 * d.norm();
+      for (Eigen::Index c = 0; c < 3; ++c) {
+        const Vec3d step = h * Vec3d::Unit(c);
+        const double near_axis = d.head<2>().norm() / d.norm();
+        if (near_axis < 0.01 && i >= 3) continue;  // there the differences themselves lose their digits
+        expect_slope(lens.project(d + step), lens.project(d - step), h, j.dpixel_ddirection.col(c),
+                     j.dpixel_ddirection.norm());
+      }
+      for (Eigen::Index c = 0; c < 8; ++c) {
+        const auto moved = [&](double by) {
+          Lens l = lens;
+          double* const numbers[8] = {&l.focal.x(), &l.focal.y(), &l.center.x(), &l.center.y(),
+                                      &l.k[0],      &l.k[1],      &l.k[2],       &l.k[3]};
+          *numbers[c] += by;
+          return l.project(d);
+        };
+        expect_slope(moved(1e-4), moved(-1e-4), 1e-4, j.dpixel_dlens.col(c), lens.project(d).norm());
+      }
+    }
+}
+
 TEST(Lens, EquidistantProjectionIsItsClosedForm) {
   const Lens lens = equidistant();
   const Vec2d right = lens.project(Vec3d(1, 0, 1));
