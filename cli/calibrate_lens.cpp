@@ -4,17 +4,24 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "calibration/lens_calibration.h"
 #include "calibration/lens_report.h"
+#include "calibration/picture_views.h"
 #include "cli/command.h"
+#include "cli/progress.h"
 #include "interface/atomic_file.h"
 
 namespace lightwell::cli {
 namespace {
 
 struct LensOptions {
+  std::vector<std::string> pictures;
+  std::string board;
+  double marker_mm = 0;  // 0: the board's usual one
   std::string corners;
+  std::string corners_out;
   std::string out;
   bool json = false;
 };
@@ -38,19 +45,59 @@ void print_text(const LensCalibration& c, const TargetViews& target_views, const
   std::printf("written           %s\n", out.c_str());
 }
 
+struct Input {
+  PictureViews views;
+  std::string name;  // for messages
+};
+
+Result<Board> board_of(const LensOptions& options) {
+  auto board = board_from_text(options.board);
+  if (!board || options.marker_mm == 0) return board;
+  if (!(options.marker_mm > 0 && options.marker_mm < board->pitch_mm))
+    return usage("--marker is " + std::to_string(options.marker_mm) +
+                 ", allowed above 0, below the pitch of " + std::to_string(board->pitch_mm) + " mm");
+  board->marker_mm = options.marker_mm;
+  return board;
+}
+
+Result<Input> read_input(const LensOptions& options) {
+  const bool pictures = !options.pictures.empty();
+  if (pictures == !options.corners.empty())
+    return usage(pictures ? "pictures and --corners cannot be given together"
+                          : "pictures with --board, or --corners, are required");
+  if (!pictures) {
+    if (!options.board.empty()) return usage("--board goes with pictures, not with --corners");
+    auto views = read_target_views(options.corners);
+    if (!views) return views.error();
+    return Input{{*std::move(views), {}}, options.corners + ": "};
+  }
+  if (options.board.empty()) return usage("--board is required with pictures");
+  const auto board = board_of(options);
+  if (!board) return board.error();
+  Progress progress(options.pictures.size());
+  auto views = views_of_pictures(options.pictures, *board, [&](std::size_t n) { progress.done(n); });
+  if (!views) return views.error();
+  return Input{*std::move(views), ""};
+}
+
 int run(const LensOptions& options) {
-  const auto target_views = read_target_views(options.corners);
-  if (!target_views) return fail(target_views.error());
-  const auto calibration = calibrate_lens(*target_views);
-  if (!calibration)
-    return fail({calibration.error().kind, options.corners + ": " + calibration.error().message});
-  const nlohmann::ordered_json report = lens_report(*calibration, *target_views);
+  const auto input = read_input(options);
+  if (!input) return fail(input.error());
+  const TargetViews& target_views = input->views.target_views;
+  auto calibration = calibrate_lens(target_views);
+  if (!calibration) return fail({calibration.error().kind, input->name + calibration.error().message});
+  for (std::size_t i = 0; i < input->views.reasons.size(); ++i)
+    if (!input->views.reasons[i].empty()) calibration->views[i].reason = input->views.reasons[i];
+  const nlohmann::ordered_json report = lens_report(*calibration, target_views);
+  if (!options.corners_out.empty())
+    if (const Status status = write_file_atomically(options.corners_out, to_json(target_views)); !status)
+      return fail(status.error());
   if (const Status status = write_file_atomically(options.out, report.dump() + "\n"); !status)
     return fail(status.error());
   if (options.json)
     std::printf("%s\n", report.dump().c_str());
   else
-    print_text(*calibration, *target_views, options.out);
+    print_text(*calibration, target_views, options.out);
   return 0;
 }
 
@@ -60,13 +107,19 @@ Command add_calibrate_lens(CLI::App& calibrate) {
   const auto o = std::make_shared<LensOptions>();
   CLI::App* command = calibrate.add_subcommand(
       "lens", "Kannala-Brandt lens, to 180 degrees and beyond, from views of a board");
-  command->footer("Example: lightwell calibrate lens --corners corners.json --out lens.json");
-  command
-      ->add_option(
-          "--corners", o->corners,
-          "Points of the target and their pixels: {\"image_size\": [w, h], \"views\": [{\"name\": .., "
-          "\"points\": [[X, Y, Z, u, v], ..]}]}, mm and pixels")
-      ->required();
+  command->footer("Example: lightwell calibrate lens board_*.png --board 9x6:30 --out lens.json");
+  command->add_option("pictures", o->pictures, "Pictures of the board, JPEG or PNG, all from one camera");
+  command->add_option(
+      "--board", o->board,
+      "COLSxROWS:PITCH_MM[:chessboard|charuco|aprilgrid]: inner corners of a chessboard (the default), "
+      "squares of a ChArUco board, tags of an AprilGrid; pitch from one to the next");
+  command->add_option("--marker", o->marker_mm,
+                      "Side of a marker, mm; else 3/4 of the pitch (charuco), pitch / 1.3 (aprilgrid)");
+  command->add_option(
+      "--corners", o->corners,
+      "Points of the target and their pixels: {\"image_size\": [w, h], \"views\": [{\"name\": .., "
+      "\"points\": [[X, Y, Z, u, v], ..]}]}, mm and pixels");
+  command->add_option("--corners-out", o->corners_out, "What was found in the pictures, as for --corners");
   command->add_option("--out", o->out, "The lens, with its uncertainty, JSON")->required();
   command->add_flag("--json", o->json, "The same on stdout");
   return {command, [o] { return run(*o); }};
