@@ -72,7 +72,8 @@ vec3 metallic_roughness(Surface s, vec3 to_light, float cosine) {
 }
 
 vec3 phong(Surface s, vec3 to_light) {
-  float lobe = pow(max(dot(s.mirrored, to_light), 1e-8), s.exponent);
+  float along = dot(s.mirrored, to_light);
+  float lobe = along > 0.0 || s.exponent == 0.0 ? pow(max(along, 1e-8), s.exponent) : 0.0;
   return s.diffuse / kPi + s.specular * ((s.exponent + 2.0) / (2.0 * kPi) * lobe);
 }
 

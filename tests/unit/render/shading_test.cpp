@@ -102,6 +102,23 @@ TEST_F(Shading, PhongReachesItsClosedFormInTheMirrorDirection) {
   }
 }
 
+TEST_F(Shading, PhongLobeIsBlackBehindItsMirrorDirectionForEveryExponentButNought) {
+  // Eye at 45°, light 60° on the eye's own side: 105° from the mirror direction.
+  const double theta = 60 * kPi / 180;
+  const Vec3f light = Vec3d(std::sin(theta), std::cos(theta), 0).cast<float>();
+  for (const float exponent : {0.0f, 0.01f, 0.3f, 1.0f}) {
+    Material m = lambertian(Rgb::Zero());
+    m.specular = Rgb(0.3f, 0.2f, 0.1f);
+    m.exponent = exponent;
+    Scene scene;
+    add_ground(scene, m);
+    const auto p = picture(scene, light_set({{light, kLux}}), camera_at({2, 2, 0}, {0, 0, 0}), 1, 1);
+    // 0⁰ is 1: a lobe without an exponent is even in all directions.
+    const Rgb f = exponent == 0 ? Rgb(m.specular / kPiF) : Rgb(Rgb::Zero());
+    expect_near(rgb(p, 0, 0), f * kLux * light.y(), kTolerance, "exponent " + std::to_string(exponent));
+  }
+}
+
 TEST_F(Shading, PhongLobeReflectsItsSpecularAlbedoAtNormalIncidence) {
   // Σ over directions of f · cos · dω, with the eye along the normal, is specular for any exponent.
   Material m = lambertian(Rgb::Zero());
