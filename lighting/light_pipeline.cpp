@@ -138,6 +138,9 @@ std::span<const DirectionalLight> LightPipeline::unclustered() const noexcept {
 Rgb LightPipeline::total_illuminance() const noexcept {
   return state_->total;
 }
+Rgb LightPipeline::map_illuminance() const noexcept {
+  return state_->distribution.total_illuminance().cast<float>();
+}
 double LightPipeline::delay_frames() const noexcept {
   return state_->filter ? state_->filter->delay_frames() : 0;
 }

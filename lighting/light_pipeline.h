@@ -45,6 +45,8 @@ class LightPipeline {
   [[nodiscard]] std::span<const DirectionalLight> unclustered() const noexcept;
   // Total illuminance the lights stand for: filtered, equal to the sum over process()'s lights.
   [[nodiscard]] Rgb total_illuminance() const noexcept;
+  // Total illuminance of the last map itself.
+  [[nodiscard]] Rgb map_illuminance() const noexcept;
   // Frames by which the lights lag the map.
   [[nodiscard]] double delay_frames() const noexcept;
   // Forgets all history (camera changed, long gap).

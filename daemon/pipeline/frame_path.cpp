@@ -108,7 +108,7 @@ void FramePath::process(const FrameInfo& info, std::span<const std::byte> codes)
   out.exposure_us = info.exposure_us;
   out.coverage = coverage_of(out.map.grid);
   out.total_illuminance = lights_->total_illuminance();
-  out.measured_illuminance = total_illuminance(out.map).cast<float>();
+  out.measured_illuminance = lights_->map_illuminance();
   out.delay_frames = static_cast<float>(lights_->delay_frames());
   out.publish_mono_ns = mono_now_ns();
   snapshots_.end_write();

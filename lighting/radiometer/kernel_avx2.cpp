@@ -159,7 +159,9 @@ __m256 horizontal_maxima(const float* v) {
 }
 
 // Eight cells from i on: to radiance, and out to their slots.
-void finish(const CellBatch& batch, std::size_t i, __m256 sum, __m256 most, const CellOutput& out) {
+// Inline and with copies of both (nothing that is written can change them): a third of a small frame's time is here.
+__attribute__((always_inline)) inline void finish(const CellBatch batch, std::size_t i, __m256 sum,
+                                                  __m256 most, const CellOutput out) {
   const __m256 toe = _mm256_loadu_ps(batch.toe + i);
   const __m256 exposure = _mm256_set1_ps(out.exposure);
   __m256 radiance = _mm256_sub_ps(_mm256_mul_ps(sum, _mm256_loadu_ps(batch.scale + i)), toe);
@@ -170,15 +172,22 @@ void finish(const CellBatch& batch, std::size_t i, __m256 sum, __m256 most, cons
   alignas(32) float p[8];
   _mm256_store_ps(r, radiance);
   _mm256_store_ps(p, peak);
-  const std::size_t n = batch.cells - i < 8 ? batch.cells - i : 8;
   const std::uint32_t* slot = batch.slot + i;
-  for (std::size_t k = 0; k < n; ++k) {
+  const auto put = [&](std::size_t k) {
     out.radiance[slot[k]] = r[k];
     out.peak[slot[k]] = p[k];
+  };
+  if (batch.cells - i >= 8) {
+    for (std::size_t k = 0; k < 8; ++k) put(k);
+  } else {
+    for (std::size_t k = 0; k < batch.cells - i; ++k) put(k);
   }
 }
 
-void reduce(const CellBatch& batch, const float* window, const CellScratch& scratch, const CellOutput& out) {
+void reduce(const CellBatch& given, const float* window, const CellScratch& scratch,
+            const CellOutput& given_out) {
+  const CellBatch batch = given;
+  const CellOutput out = given_out;
   const std::uint16_t* start = batch.start;
   const std::uint8_t* mask = batch.mask;
   float* sum = scratch.sum;
@@ -214,7 +223,9 @@ void reduce(const CellBatch& batch, const float* window, const CellScratch& scra
     finish(batch, i, horizontal_sums(scratch.sum + 8 * i), horizontal_maxima(scratch.peak + 8 * i), out);
 }
 
-void reduce_pixels(const CellBatch& batch, const float* window, const CellOutput& out) {
+void reduce_pixels(const CellBatch& given, const float* window, const CellOutput& given_out) {
+  const CellBatch batch = given;
+  const CellOutput out = given_out;
   const std::uint16_t* start = batch.start;
   for (std::size_t i = 0; i < batch.cells; i += 8) {
     const std::uint32_t n = batch.classes[i / 8].segments;
