@@ -91,7 +91,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Configuration& configuration
   if (!web) return web.error();
   p.web = std::move(*web);
 
-  const Status started = p.pipeline.start(
+  Status started = p.pipeline.start(
       std::move(*source),
       std::make_shared<FramePath>(p.calibration, frame_path_options(configuration), p.snapshots));
   if (!started) return started.error();
@@ -116,7 +116,7 @@ Status Daemon::reload(const Configuration& wanted) {
     if (!made) return made.error();
     source = std::move(*made);
   }
-  const Status replaced = parts_->pipeline.replace(
+  Status replaced = parts_->pipeline.replace(
       std::move(source),
       std::make_shared<FramePath>(*calibration, frame_path_options(wanted), parts_->snapshots));
   if (!replaced) return replaced;

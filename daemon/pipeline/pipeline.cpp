@@ -39,7 +39,7 @@ Pipeline::~Pipeline() {
 
 Status Pipeline::start(std::shared_ptr<CaptureSource> source, std::shared_ptr<FramePath> path) {
   verify_bug(!thread_.joinable(), "pipeline started twice");
-  const Status started = source->start();
+  Status started = source->start();
   if (!started) return started;
   {
     const std::scoped_lock lock(mutex_);  // whoever asks for a view may do so already
@@ -53,7 +53,7 @@ Status Pipeline::start(std::shared_ptr<CaptureSource> source, std::shared_ptr<Fr
 
 Status Pipeline::replace(std::shared_ptr<CaptureSource> source, std::shared_ptr<FramePath> path) {
   if (source) {
-    const Status started = source->start();
+    Status started = source->start();
     if (!started) return started;
   }
   {
