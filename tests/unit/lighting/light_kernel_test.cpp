@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -97,36 +98,6 @@ TEST_P(LightKernel, PlacesAreTheSameBitsOnEveryInstructionSet) {
   }
 }
 
-// The search against a plain walk along the ring, bin by bin.
-TEST_P(LightKernel, PlacesAreWhereAWalkAlongTheRingEnds) {
-  const PolarGrid grid = GetParam();
-  RingDistribution distribution(grid);
-  distribution.build(wild_map(grid, 1, 11));
-  AzimuthSeam seam(grid);
-  seam.fix(distribution, 0);
-  std::mt19937 random(13);
-  std::uniform_real_distribution<double> uniform(0, 1);
-  for (int i = 0; i < 500; ++i) {
-    const RingCoordinates point = {uniform(random), uniform(random)};
-    MapPlace place;
-    light_kernel::kernels().locate(distribution.tables(), seam.tables(), Blending::own, &point, 1, &place);
-    double before = 0;
-    int ring = 0;
-    while (ring + 1 < grid.rings &&
-           before + distribution.ring_power(ring) <= point.t * distribution.total_power())
-      before += distribution.ring_power(ring++);
-    ASSERT_EQ(place.ring.ring, ring);
-    const double reached = point.s * distribution.ring_power(ring);
-    double sum = 0;
-    for (int s = 0; s < place.sector.sector; ++s) sum += distribution.bin_power(ring, s);
-    const double bin = distribution.bin_power(ring, place.sector.sector);
-    EXPECT_GT(bin, 0);
-    // Block sums are made in float: 2e-7 of the ring's power either way.
-    const double slack = 2e-7 * distribution.ring_power(ring);
-    EXPECT_NEAR(sum + place.sector.fraction * bin, reached, slack);
-  }
-}
-
 TEST_P(LightKernel, FiltersAndDirectionsAreTheSameBitsOnEveryInstructionSet) {
   constexpr int kCount = 301, kTaps = 9;
   std::mt19937 random(17);
@@ -168,7 +139,117 @@ TEST_P(LightKernel, FiltersAndDirectionsAreTheSameBitsOnEveryInstructionSet) {
   EXPECT_EQ(e, f);
 }
 
+// On the kernels of every instruction set that runs here.
+class EveryLightKernel : public testing::TestWithParam<PolarGrid> {
+ protected:
+  static std::vector<const Kernels*> all() {
+    std::vector<const Kernels*> kernels = {&light_kernel::kPortableKernels};
+    if (light_kernel::avx2_kernels()) kernels.push_back(light_kernel::avx2_kernels());
+    return kernels;
+  }
+};
+
+// The search against a plain walk along the ring, bin by bin, for every blending and with the seam anywhere.
+TEST_P(EveryLightKernel, PlacesAreWhereAWalkAlongTheRingEnds) {
+  const PolarGrid grid = GetParam();
+  RingDistribution d(grid);
+  d.build(wild_map(grid, 1, 11));
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const Kernels* kernels : all())
+    for (const Blending blending : {Blending::own, Blending::by_power, Blending::printed})
+      for (int i = 0; i < 200; ++i) {
+        AzimuthSeam seam(grid);
+        const double cut = uniform(random);
+        seam.fix(d, cut);
+        const RingCoordinates point = {uniform(random), uniform(random)};
+        MapPlace place;
+        kernels->locate(d.tables(), seam.tables(), blending, &point, 1, &place);
+        // The ring.
+        double before = 0;
+        int ring = 0;
+        while (ring + 1 < grid.rings && before + d.ring_power(ring) <= point.t * d.total_power())
+          before += d.ring_power(ring++);
+        ASSERT_EQ(place.ring.ring, ring);
+        // The bins' powers of its blend, as the header states it.
+        const double fraction = (point.t * d.total_power() - before) / d.ring_power(ring);
+        const int side = std::clamp(ring + (fraction < 0.5 ? -1 : 1), 0, grid.rings - 1);
+        const double weight = blending == Blending::own || side == ring ? 0 : std::abs(fraction - 0.5);
+        std::vector<double> power;
+        for (int s = 0; s < grid.sectors; ++s) {
+          double own = d.bin_power(ring, s), other = d.bin_power(side, s);
+          if (blending == Blending::printed) {
+            own /= d.ring_power(ring);
+            other = d.ring_power(side) > 0 ? other / d.ring_power(side) : 1.0 / grid.sectors;
+          }
+          power.push_back((1 - weight) * own + weight * other);
+        }
+        const auto power_before = [&](double sectors) {
+          double sum = 0;
+          for (int s = 0; s < grid.sectors; ++s)
+            sum += power[static_cast<std::size_t>(s)] * std::clamp(sectors - s, 0.0, 1.0);
+          return sum;
+        };
+        const double total = power_before(grid.sectors);
+        const double reached = std::fmod(power_before(cut * grid.sectors) + point.s * total, total);
+        EXPECT_GT(power[static_cast<std::size_t>(place.sector.sector)], 0);
+        // Sums of a thousand doubles.
+        EXPECT_NEAR(power_before(place.sector.sector + place.sector.fraction), reached, 1e-12 * total)
+            << "blending " << static_cast<int>(blending);
+      }
+}
+
+TEST_P(EveryLightKernel, ABinBesideASun1e8TimesAsBrightGetsItsShare) {
+  const PolarGrid grid = GetParam();
+  if (grid.sectors < 3) GTEST_SKIP() << "no room for neighbours";
+  PolarMap map = PolarMap::make(grid, 1);
+  map.radiance[0] = 1e8f;
+  map.radiance[1] = 1;
+  map.radiance[2] = 1;
+  RingDistribution d(grid);
+  d.build(map);
+  AzimuthSeam seam(grid);
+  seam.fix(d, 0);
+  for (const Kernels* kernels : all())
+    for (int bin = 1; bin < 3; ++bin) {
+      const RingCoordinates point = {0.5, (1e8 + bin - 0.5) / (1e8 + 2)};
+      MapPlace place;
+      kernels->locate(d.tables(), seam.tables(), Blending::own, &point, 1, &place);
+      EXPECT_EQ(place.sector.sector, bin);
+      EXPECT_NEAR(place.sector.fraction, 0.5, 1e-6);  // 1e8 in double leaves eight digits of the bin
+    }
+}
+
+TEST(LightKernelDirections, AreThoseOfTheMathematicsLibrary) {
+  constexpr int kCount = 10000;
+  std::vector<const Kernels*> all = {&light_kernel::kPortableKernels};
+  if (light_kernel::avx2_kernels()) all.push_back(light_kernel::avx2_kernels());
+  for (const Kernels* kernels : all) {
+    std::vector<float> x(kCount), y(kCount), z(kCount);
+    for (int i = 0; i < kCount; ++i) {
+      x[static_cast<std::size_t>(i)] = 1;  // the horizon, where sin θ is 1
+      y[static_cast<std::size_t>(i)] = static_cast<float>(i) / (kCount - 1);
+    }
+    const std::vector<float> turns = y;
+    kernels->directions(x.data(), y.data(), z.data(), kCount);
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const double lambda = 2 * kPi * static_cast<double>(turns[i]);
+      // Three roundings to float, of numbers up to 2π/8 before and 1 after.
+      EXPECT_NEAR(static_cast<double>(x[i]), std::sin(lambda), 1.5e-7);
+      EXPECT_NEAR(static_cast<double>(z[i]), std::cos(lambda), 1.5e-7);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Grids, LightKernel,
+                         testing::Values(PolarGrid{90, 360, kPi / 2}, PolarGrid{1, 1, kPi / 2},
+                                         PolarGrid{17, 8, kPi / 2}, PolarGrid{33, 67, 1.9},
+                                         PolarGrid{16, 1000, kPi}),
+                         [](const auto& test) {
+                           return std::to_string(test.param.rings) + "x" + std::to_string(test.param.sectors);
+                         });
+
+INSTANTIATE_TEST_SUITE_P(Grids, EveryLightKernel,
                          testing::Values(PolarGrid{90, 360, kPi / 2}, PolarGrid{1, 1, kPi / 2},
                                          PolarGrid{17, 8, kPi / 2}, PolarGrid{33, 67, 1.9},
                                          PolarGrid{16, 1000, kPi}),
