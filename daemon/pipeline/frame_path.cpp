@@ -50,10 +50,14 @@ LightPipelineOptions FramePath::filter_for(double rate_hz) const {
   return lights;
 }
 
-Status FramePath::prepare(const FrameFormat& format, double rate_hz) {
-  const bool same_format = radiometer_.has_value() && format == format_;
+bool FramePath::prepared_for(const FrameFormat& format, double rate_hz) const {
   const bool same_rate = std::abs(rate_hz - rate_hz_) <= 0.02 * std::max(rate_hz, rate_hz_);
-  if (same_format && same_rate && lights_) return {};
+  return radiometer_.has_value() && format == format_ && same_rate && lights_;
+}
+
+Status FramePath::prepare(const FrameFormat& format, double rate_hz) {
+  if (prepared_for(format, rate_hz)) return {};
+  const bool same_format = radiometer_.has_value() && format == format_;
 
   if (!same_format) {
     radiometer_.reset();

@@ -37,6 +37,7 @@ class FramePath {
 
   // Makes ready for frames of this format and rate (0: unknown). Cheap and free of allocation while nothing
   // changes. Fails (bad_input) where the calibration is not for such frames; the message says what differs.
+  [[nodiscard]] bool prepared_for(const FrameFormat& format, double rate_hz) const;
   Status prepare(const FrameFormat& format, double rate_hz);
 
   // After a good prepare for the frame's format; info.exposure_us > 0. Allocates nothing once every snapshot

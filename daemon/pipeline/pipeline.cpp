@@ -6,6 +6,7 @@
 #include <sched.h>
 
 #include <cmath>
+#include <utility>
 
 #include "daemon/clock.h"
 
@@ -56,6 +57,7 @@ Status Pipeline::replace(std::shared_ptr<CaptureSource> source, std::shared_ptr<
     Status started = source->start();
     if (!started) return started;
   }
+  if (!source) make_tables(*path);
   {
     const std::scoped_lock lock(mutex_);
     // A replacement that still waits gives way, but for its source where this one keeps the source.
@@ -67,9 +69,30 @@ Status Pipeline::replace(std::shared_ptr<CaptureSource> source, std::shared_ptr<
   return {};
 }
 
+// For the frames that come now. What cannot be made is said by the frame path, when it meets a frame.
+void Pipeline::make_tables(FramePath& path) const {
+  std::optional<FrameFormat> format;
+  double rate_hz = 0;
+  {
+    const std::scoped_lock lock(mutex_);
+    if (next_source_ || !source_) return;  // another camera is to come, its frames are not known
+    format = format_;
+    rate_hz = source_->rate_hz();
+  }
+  if (format) static_cast<void>(path.prepare(*format, rate_hz));
+}
+
 void Pipeline::stop() noexcept {
   stopping_ = true;
   if (thread_.joinable()) thread_.join();
+  std::shared_ptr<CaptureSource> never_taken;
+  {
+    const std::scoped_lock lock(mutex_);
+    never_taken.swap(next_source_);
+    next_path_.reset();
+    replacement_waits_ = false;
+  }
+  if (never_taken) retired_.take(std::move(never_taken));
   retired_.settle();
 }
 
@@ -95,22 +118,29 @@ void Pipeline::run() noexcept {
 // lock.
 void Pipeline::take_replacement() {
   std::shared_ptr<CaptureSource> old_source;
+  std::shared_ptr<FramePath> old_path;
   {
     const std::scoped_lock lock(mutex_);
     next_path_->continue_from(path_->published());
-    path_ = std::move(next_path_);
+    old_path = std::exchange(path_, std::move(next_path_));
     if (next_source_) {
-      old_source = std::move(source_);
-      source_ = std::move(next_source_);
+      old_source = std::exchange(source_, std::move(next_source_));
+      format_.reset();
+      handled_format_.reset();
     }
     mismatch_.clear();
     replacement_waits_ = false;
   }
   mismatched_ = false;
-  if (old_source) retired_.take(std::move(old_source));
+  retired_.take(std::move(old_source), std::move(old_path));
 }
 
 void Pipeline::handle(const FrameLease& frame) {
+  if (handled_format_ != frame.info().format) {
+    handled_format_ = frame.info().format;
+    const std::scoped_lock lock(mutex_);
+    format_ = handled_format_;
+  }
   Status ready = check_exposure(frame.info());
   if (ready) ready = path_->prepare(frame.info().format, source_->rate_hz());
   if (!ready || mismatched_) {  // rare: state changes only

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
@@ -36,8 +37,8 @@ class Pipeline {
   // Fails where the source cannot even begin (missing file); afterwards frames flow until stop.
   Status start(std::shared_ptr<CaptureSource> source, std::shared_ptr<FramePath> path);
   // Takes effect between two frames; the last call before that counts. source null: keep the one that runs
-  // (or that an earlier call has begun), without losing a frame. A source that is replaced ends on a thread of
-  // its own, however long that takes.
+  // (or that an earlier call has begun), without losing a frame: the new path's tables are made here, for the
+  // frames that come now. A source that is replaced ends on a thread of its own, however long that takes.
   // A new source that cannot begin is refused here and the old one goes on.
   Status replace(std::shared_ptr<CaptureSource> source, std::shared_ptr<FramePath> path);
   // Stops the thread and all sources; up to 5 s where a camera died.
@@ -58,6 +59,7 @@ class Pipeline {
 
  private:
   void run() noexcept;
+  void make_tables(FramePath& path) const;
   void take_replacement();
   void handle(const FrameLease& frame);
   void measure_rate(std::int64_t now_ns) noexcept;
@@ -70,14 +72,16 @@ class Pipeline {
   std::atomic<double> measured_rate_hz_{0};
   std::atomic<std::uint64_t> dropped_{0};
 
-  mutable std::mutex mutex_;  // guards the four below; the frame path holds it for pointer copies only
+  mutable std::mutex mutex_;  // guards the five below; the frame path holds it for pointer copies only
   std::shared_ptr<CaptureSource> source_, next_source_;
   std::shared_ptr<FramePath> path_, next_path_;
+  std::optional<FrameFormat> format_;  // of the frames that come now
   std::string mismatch_;
   std::atomic<bool> replacement_waits_{false};
 
   // Frame path's own.
   bool mismatched_ = false;
+  std::optional<FrameFormat> handled_format_;
   std::int64_t rate_window_start_ns_ = 0;
   std::uint64_t rate_window_published_ = 0;
 };

@@ -15,10 +15,10 @@ RetiredSources::~RetiredSources() {
   thread_.join();
 }
 
-void RetiredSources::take(std::shared_ptr<CaptureSource> source) {
+void RetiredSources::take(std::shared_ptr<CaptureSource> source, std::shared_ptr<const void> tables) {
   {
     const std::scoped_lock lock(mutex_);
-    waiting_.push_back(std::move(source));
+    waiting_.push_back({std::move(source), std::move(tables)});
   }
   changed_.notify_all();
 }
@@ -33,11 +33,12 @@ void RetiredSources::run() {
   for (;;) {
     changed_.wait(lock, [&] { return ending_ || !waiting_.empty(); });
     if (waiting_.empty()) return;
-    std::vector<std::shared_ptr<CaptureSource>> now;
+    std::vector<Retired> now;
     now.swap(waiting_);
     at_work_ = true;
     lock.unlock();
-    for (const auto& source : now) source->stop();
+    for (const Retired& retired : now)
+      if (retired.source) retired.source->stop();
     now.clear();  // what a stop leaves to the destructor is waited for here as well
     lock.lock();
     at_work_ = false;

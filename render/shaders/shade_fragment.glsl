@@ -59,7 +59,8 @@ Surface unpack(vec4 position_material, uvec4 packed_surface) {
 
 // glTF 2.0, appendix B.3: Trowbridge–Reitz distribution, Smith masking, Schlick's Fresnel term.
 vec3 metallic_roughness(Surface s, vec3 to_light, float cosine) {
-  vec3 h = normalize(to_light + s.to_eye);
+  vec3 h = to_light + s.to_eye;
+  h *= inversesqrt(max(dot(h, h), 1e-12));  // a light exactly behind has none
   float nv = max(dot(s.normal, s.to_eye), 1e-4);
   float nh = max(dot(s.normal, h), 0.0);
   float vh = max(dot(s.to_eye, h), 0.0);

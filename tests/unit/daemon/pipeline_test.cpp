@@ -186,6 +186,38 @@ TEST_F(PipelineTest, ReplacementGoesOnCountingAndStopsTheOldSource) {
   EXPECT_TRUE(eventually([&] { return source_->stopped.load(); }));
 }
 
+TEST_F(PipelineTest, AReloadMakesItsTablesBeforeAFrameNeedsThem) {
+  ASSERT_TRUE(pipeline_.start(source_, path(64)));
+  source_->give(kFormat, 1500);
+  ASSERT_TRUE(published(0));
+  source_->hold();  // no frame comes
+  const auto next = path(64, "other");
+  EXPECT_FALSE(next->prepared_for(kFormat, 60));
+  ASSERT_TRUE(pipeline_.replace(nullptr, next));
+  EXPECT_TRUE(next->prepared_for(kFormat, 60));
+  source_->go_on();
+  source_->give(kFormat, 1500);  // still met by the wait that was held
+  ASSERT_TRUE(published(1));
+  source_->give(kFormat, 1500);
+  const auto snapshot = published(2);
+  ASSERT_TRUE(snapshot);
+  EXPECT_EQ(snapshot->method, "other");
+}
+
+TEST_F(PipelineTest, StoppingStopsASourceThatWasNeverTakenUp) {
+  ASSERT_TRUE(pipeline_.start(source_, path(64)));
+  auto second = std::make_shared<HandFedSource>();
+  source_->hold();
+  ASSERT_TRUE(pipeline_.replace(second, path(64)));
+  std::thread stopper([&] { pipeline_.stop(); });
+  std::this_thread::sleep_for(
+      milliseconds(50));  // the frame path ends with its wait; either way both must stop
+  source_->go_on();
+  stopper.join();
+  EXPECT_TRUE(source_->stopped);
+  EXPECT_TRUE(second->stopped);
+}
+
 TEST_F(PipelineTest, ADeadSourceThatIsReplacedHoldsUpNothing) {
   ASSERT_TRUE(pipeline_.start(source_, path(64)));
   source_->give(kFormat, 1500);
