@@ -36,9 +36,11 @@ std::string shading_models(const Scene& scene) {
 }
 
 // across = 0.5 / radius = kDepthPadding / extent (make_light_rows).
-std::string map_facts(bool nothing_casts) {
+std::string map_facts(bool nothing_casts, bool simplified) {
+  constexpr float kDepthTexels = 0.1f;  // 16 bits of depth, and curvature
   return std::string("#define HAS_SHADOWS ") + (nothing_casts ? "0" : "1") + "\n#define MAP_REACH " +
-         std::to_string(kDepthPadding) + "\n";
+         std::to_string(kDepthPadding) + "\n#define CASTER_SLACK " +
+         std::to_string(kDepthTexels + (simplified ? kSimplifiedTexels : 0)) + "\n";
 }
 
 // Values for a program, which it makes current.
@@ -70,8 +72,9 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   if (!atlas) return atlas.error();
   auto tone_mapper = ToneMapper::create();
   if (!tone_mapper) return tone_mapper.error();
-  auto surfaces = gl::make_program("fullscreen_vertex", "shade_fragment",
-                                   shading_models(scene) + map_facts(atlas->empty()));
+  auto surfaces =
+      gl::make_program("fullscreen_vertex", "shade_fragment",
+                       shading_models(scene) + map_facts(atlas->empty(), options.simplify_casters));
   if (!surfaces) return surfaces.error();
   auto background = gl::make_program("fullscreen_vertex", "background_fragment");
   if (!background) return background.error();

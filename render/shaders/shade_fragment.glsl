@@ -100,8 +100,9 @@ struct Maps {
 float visibility(Maps maps, vec2 tile, vec3 normal, vec3 to_light, float extent, float cosine) {
   float size = abs(extent);
   // A 2×2 comparison reaches √2 texels away, where a plane at angle θ to the light is nearer by √2·texel·tan θ. Moving
-  // the point by √2·texel·sin θ along its normal clears exactly that; the rest is for depth's 16 bits and curvature.
-  float bias = maps.bias * size * (1.4142136 * sqrt(max(1.0 - cosine * cosine, 0.0)) + 0.1);
+  // the point by √2·texel·sin θ along its normal clears exactly that; the rest
+  // (CASTER_SLACK) is for depth's 16 bits, curvature, and casters simpler than what is seen.
+  float bias = maps.bias * size * (1.4142136 * sqrt(max(1.0 - cosine * cosine, 0.0)) + CASTER_SLACK);
   vec3 p = (extent > 0.0 ? maps.from_scene : maps.from_objects) + normal * bias;
   vec3 u = abs(to_light.y) < 0.9 ? vec3(to_light.z, 0.0, -to_light.x) : vec3(0.0, -to_light.z, to_light.y);
   u *= inversesqrt(dot(u, u));

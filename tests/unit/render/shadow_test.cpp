@@ -202,6 +202,43 @@ TEST_F(Shadows, OfSimplifiedCastersAreThoseOfTheFullMeshes) {
   EXPECT_GT(relative_rmse, 0);  // simplified indeed
 }
 
+// Simpler facets of a hollow lie above it; they must not shadow what they stand for.
+TEST_F(Shadows, AnOpenBowlHasNoShadowOnItsInsideFromSimplerCasters) {
+  constexpr int kRings = 48, kSectors = 96;
+  std::vector<Vec3f> positions, normals;
+  std::vector<std::uint32_t> indices;
+  for (int r = 0; r <= kRings; ++r)
+    for (int s = 0; s < kSectors; ++s) {
+      const double theta = kPi / 3 * r / kRings, phi = 2 * kPi * s / kSectors;
+      const Vec3d down(std::sin(theta) * std::cos(phi), -std::cos(theta), std::sin(theta) * std::sin(phi));
+      positions.push_back((down + Vec3d(0, 1, 0)).cast<float>());
+      normals.push_back((-down).cast<float>());
+    }
+  const auto at = [](int r, int s) { return static_cast<std::uint32_t>(r * kSectors + s % kSectors); };
+  for (int r = 0; r < kRings; ++r)
+    for (int s = 0; s < kSectors; ++s)
+      for (const std::uint32_t i :
+           {at(r, s), at(r, s + 1), at(r + 1, s + 1), at(r, s), at(r + 1, s + 1), at(r + 1, s)})
+        indices.push_back(i);
+  Scene scene;
+  add_mesh(scene, positions, normals, indices, lambertian(kWhite));
+  const SceneCamera camera = camera_at({0, 6, 0.01f}, {0, 0, 0}, 0.3f);
+  for (const int map_size : {32, 64, 256}) {
+    const auto p =
+        picture(scene, light_set({{Vec3f::UnitY(), kLux}}), camera, kWidth, kHeight, 1, map_size, true);
+    const auto full =
+        picture(scene, light_set({{Vec3f::UnitY(), kLux}}), camera, kWidth, kHeight, 1, map_size, false);
+    int inside = 0;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        if (alpha(full, x, y) < 1) continue;
+        ++inside;
+        EXPECT_GT(rgb(p, x, y)[0], 0.99f * rgb(full, x, y)[0]) << map_size << " at " << x << ", " << y;
+      }
+    EXPECT_GT(inside, 1000);
+  }
+}
+
 TEST_F(Shadows, LightsBeyondOneAtlasOrBlockHaveTheirShadowsToo) {
   // 600 equal lights in one direction are one light 600 times as strong.
   Scene scene;
