@@ -69,10 +69,11 @@ CauchyFactor cauchy_factor(double scale, double error2) {
 // Projection less pixel of all points of one view.
 class ViewCost : public ceres::CostFunction {
  public:
-  ViewCost(const Lens& lens, const std::vector<Correspondence>& points, double cauchy_px)
-      : lens_(lens), points_(points), cauchy_px_(cauchy_px) {
+  ViewCost(const Lens& lens, const TargetShape& shape, const std::vector<Correspondence>& points,
+           double cauchy_px)
+      : lens_(lens), shape_(shape), points_(points), cauchy_px_(cauchy_px) {
     set_num_residuals(static_cast<int>(2 * points.size()));
-    *mutable_parameter_block_sizes() = {8, 6};
+    *mutable_parameter_block_sizes() = {8, 6, 5};
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
@@ -82,8 +83,11 @@ class ViewCost : public ceres::CostFunction {
     const TargetPose pose{Vec3d(parameters[1]), Vec3d(parameters[1] + 3)};
     const Eigen::Matrix3d rotation = pose.camera_from_target();
     const Eigen::Matrix3d turn = left_jacobian(pose.rotation);
+    const Eigen::Matrix<double, 5, 1> change(parameters[2]);
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      const Vec3d turned = rotation * points_[i].target_mm;
+      const Eigen::Matrix<double, 3, 5> basis = shape_.basis(points_[i].target_mm);
+      const Vec3d place = points_[i].target_mm + basis * change;
+      const Vec3d turned = rotation * place;
       const Vec3d direction = turned + pose.translation_mm;
       if (!jacobians) {
         const Vec2d error = lens.project(direction) - points_[i].pixel;
@@ -104,12 +108,16 @@ class ViewCost : public ceres::CostFunction {
         by_pose << -j.dpixel_ddirection * cross_matrix(turned) * turn, j.dpixel_ddirection;
         Eigen::Map<Eigen::Matrix<double, 2, 6, Eigen::RowMajor>>{jacobians[1] + 12 * i} = weighted * by_pose;
       }
+      if (jacobians[2])
+        Eigen::Map<Eigen::Matrix<double, 2, 5, Eigen::RowMajor>>{jacobians[2] + 10 * i} =
+            weighted * j.dpixel_ddirection * rotation * basis;
     }
     return true;
   }
 
  private:
   const Lens& lens_;  // what is not solved for
+  const TargetShape& shape_;
   const std::vector<Correspondence>& points_;
   double cauchy_px_;
 };
@@ -147,10 +155,13 @@ std::vector<int> held(const LensFreedom& freedom) {
   return out;
 }
 
-double squared_error(const Lens& lens, const std::vector<PosedView>& views) {
+double squared_error(const Lens& lens, const TargetShape& shape, const std::vector<PosedView>& views) {
   double sum = 0;
-  for (const PosedView& view : views)
-    for (const double e : errors_px(lens, view.pose, view.points)) sum += e * e;
+  for (const PosedView& view : views) {
+    std::vector<Correspondence> points = view.points;
+    for (auto& p : points) p.target_mm = shape.place(p.target_mm);
+    for (const double e : errors_px(lens, view.pose, points)) sum += e * e;
+  }
   return sum;
 }
 
@@ -168,7 +179,10 @@ double largest_theta_rad(const std::vector<PosedView>& views) {
   return largest;
 }
 
-double adjust(Lens& lens, std::vector<PosedView>& views, const AdjustmentOptions& options) {
+double adjust(Lens& lens, std::vector<PosedView>& views, const AdjustmentOptions& options,
+              TargetShape* shape) {
+  TargetShape square;
+  TargetShape& target = shape ? *shape : square;
   LensNumbers numbers = numbers_of(lens, options.freedom);
   std::vector<PoseNumbers> poses;
   for (const PosedView& view : views) {
@@ -183,8 +197,9 @@ double adjust(Lens& lens, std::vector<PosedView>& views, const AdjustmentOptions
     problem.SetManifold(numbers.data(), new ceres::SubsetManifold(8, constant));
   problem.SetParameterLowerBound(numbers.data(), 0, 1e-3);
   for (std::size_t i = 0; i < views.size(); ++i)
-    problem.AddResidualBlock(new ViewCost(lens, views[i].points, options.cauchy_px), nullptr, numbers.data(),
-                             poses[i].data());
+    problem.AddResidualBlock(new ViewCost(lens, target, views[i].points, options.cauchy_px), nullptr,
+                             numbers.data(), poses[i].data(), target.change_mm.data());
+  if (!shape) problem.SetParameterBlockConstant(target.change_mm.data());
   const double field = largest_theta_rad(views);
   constexpr int kWalls = 48;
   for (int i = 1; i <= kWalls && options.freedom.coefficients > 0; ++i)
@@ -194,6 +209,7 @@ double adjust(Lens& lens, std::vector<PosedView>& views, const AdjustmentOptions
   solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   for (PoseNumbers& pose : poses) solver.linear_solver_ordering->AddElementToGroup(pose.data(), 0);
   solver.linear_solver_ordering->AddElementToGroup(numbers.data(), 1);
+  solver.linear_solver_ordering->AddElementToGroup(target.change_mm.data(), 1);
   solver.max_num_iterations = options.iterations;
   solver.function_tolerance = options.tolerance;
   solver.logging_type = ceres::SILENT;
@@ -203,36 +219,39 @@ double adjust(Lens& lens, std::vector<PosedView>& views, const AdjustmentOptions
   set_numbers(lens, numbers.data());
   for (std::size_t i = 0; i < views.size(); ++i)
     views[i].pose = {Vec3d(poses[i].data()), Vec3d(poses[i].data() + 3)};
-  return squared_error(lens, views);
+  return squared_error(lens, target, views);
 }
 
 std::optional<Eigen::Matrix<double, 8, 8>> lens_covariance(const Lens& lens,
                                                            const std::vector<PosedView>& views,
-                                                           const LensFreedom& freedom, double noise_px) {
-  using Matrix8 = Eigen::Matrix<double, 8, 8>;
-  const Matrix8 by_numbers = dlens_dnumbers(lens);
-  Matrix8 information = Matrix8::Zero();
+                                                           const LensFreedom& freedom, double noise_px,
+                                                           const TargetShape* shape) {
+  using Matrix13 = Eigen::Matrix<double, 13, 13>;  // the lens's numbers, the shape's
+  const Eigen::Matrix<double, 8, 8> by_numbers = dlens_dnumbers(lens);
+  Matrix13 information = Matrix13::Zero();
   for (const PosedView& view : views) {
     const Eigen::Matrix3d rotation = view.pose.camera_from_target();
-    Matrix8 own = Matrix8::Zero();
+    Matrix13 own = Matrix13::Zero();
     Eigen::Matrix<double, 6, 6> pose = Eigen::Matrix<double, 6, 6>::Zero();
-    Eigen::Matrix<double, 8, 6> mixed = Eigen::Matrix<double, 8, 6>::Zero();
+    Eigen::Matrix<double, 13, 6> mixed = Eigen::Matrix<double, 13, 6>::Zero();
     for (const auto& p : view.points) {
       const Vec3d turned = rotation * p.target_mm;
       const LensJacobian j = project_with_jacobian(lens, turned + view.pose.translation_mm);
-      const Eigen::Matrix<double, 2, 8> by_lens = j.dpixel_dlens * by_numbers;
+      Eigen::Matrix<double, 2, 13> by_shared = Eigen::Matrix<double, 2, 13>::Zero();
+      by_shared.leftCols<8>() = j.dpixel_dlens * by_numbers;
+      if (shape) by_shared.rightCols<5>() = j.dpixel_ddirection * rotation * shape->basis(p.target_mm);
       Eigen::Matrix<double, 2, 6> by_pose;
       by_pose << -j.dpixel_ddirection * cross_matrix(turned), j.dpixel_ddirection;
-      own += by_lens.transpose() * by_lens;
+      own += by_shared.transpose() * by_shared;
       pose += by_pose.transpose() * by_pose;
-      mixed += by_lens.transpose() * by_pose;
+      mixed += by_shared.transpose() * by_pose;
     }
-    // What the view says of the lens once its pose is free (Schur complement).
+    // What the view says of the rest once its pose is free (Schur complement).
     information += own - mixed * pose.ldlt().solve(mixed.transpose());
   }
   std::vector<int> free;
   const std::vector<int> constant = held(freedom);
-  for (int i = 0; i < 8; ++i)
+  for (int i = 0; i < (shape ? 13 : 8); ++i)
     if (std::find(constant.begin(), constant.end(), i) == constant.end()) free.push_back(i);
   Eigen::MatrixXd reduced = information(free, free);
   // To a unit diagonal first: pixels and eighth powers of the angle differ by many decades.
@@ -242,9 +261,9 @@ std::optional<Eigen::Matrix<double, 8, 8>> lens_covariance(const Lens& lens,
   if (!reduced.allFinite() || eigen.eigenvalues()[0] < 1e-13) return {};
   const Eigen::MatrixXd inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
                                   eigen.eigenvectors().transpose();
-  Matrix8 covariance = Matrix8::Zero();
+  Matrix13 covariance = Matrix13::Zero();
   covariance(free, free) = noise_px * noise_px * (scale.asDiagonal() * inverse * scale.asDiagonal());
-  return Matrix8(by_numbers * covariance * by_numbers.transpose());
+  return Eigen::Matrix<double, 8, 8>(by_numbers * covariance.topLeftCorner<8, 8>() * by_numbers.transpose());
 }
 
 }  // namespace lightwell

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calibration/target_pose.h"
+#include "calibration/target_shape.h"
 #include "lighting/lens.h"
 
 namespace lightwell {
@@ -35,15 +36,17 @@ struct AdjustmentOptions {
 
 // Bundle adjustment: the lens and all poses that make Σ loss(|projection − pixel|²) smallest, with θd kept
 // increasing over the angles that the points use. Returns Σ |projection − pixel|² (not the loss), or NaN
-// where the solver finds no number.
-double adjust(Lens& lens, std::vector<PosedView>& views, const AdjustmentOptions& options);
+// where the solver finds no number. shape: solved for too where given; points stay those of the square board.
+double adjust(Lens& lens, std::vector<PosedView>& views, const AdjustmentOptions& options,
+              TargetShape* shape = nullptr);
 
 // Covariance of fx, fy, cx, cy, k1 … k4 for pixel noise of standard deviation noise_px a coordinate, poses
-// marginalised. Zero rows for what is held; fx and fy vary together where the aspect is held. Nothing where
+// marginalised, and the board's shape where `shape` is given (points are then those of the shaped board). Zero rows for what is held; fx and fy vary together where the aspect is held. Nothing where
 // the views do not determine the lens.
 std::optional<Eigen::Matrix<double, 8, 8>> lens_covariance(const Lens& lens,
                                                            const std::vector<PosedView>& views,
-                                                           const LensFreedom& freedom, double noise_px);
+                                                           const LensFreedom& freedom, double noise_px,
+                                                           const TargetShape* shape = nullptr);
 
 // Largest angle off axis of the views' points, radians.
 double largest_theta_rad(const std::vector<PosedView>& views);

@@ -130,6 +130,29 @@ bool judge(const Lens& lens, std::vector<Judged>& judged, double noise_px) {
   return same;
 }
 
+// Lens, poses and judgement in turns until nothing changes.
+void settle(Solution& s, int rounds) {
+  for (int round = 0; round < rounds; ++round) {
+    s.noise_px = robust_adjust(s.lens, s.judged, {round == 0 ? 3 : 4, true, true}, round < 2 ? 30 : 15);
+    if (!std::isfinite(s.noise_px)) return;
+    const bool settled = judge(s.lens, s.judged, s.noise_px);
+    if (used_count(s.judged) < kFewestViews || (settled && round > 1)) return;
+  }
+}
+
+// The board's own shape, where the views support it; the solution then goes on with the points of that board, which
+// are kept in `shaped`.
+std::optional<TargetShape> take_shape(Solution& s, const TargetViews& square, TargetViews& shaped) {
+  TargetShape shape = square_shape(square.views);
+  if (!shape_is_supported(s.lens, posed(s.judged, true), shape)) return {};
+  shaped = square;
+  for (TargetView& view : shaped.views)
+    for (Correspondence& p : view.points) p.target_mm = shape.place(p.target_mm);
+  for (std::size_t i = 0; i < s.judged.size(); ++i) s.judged[i].view = &shaped.views[i];
+  settle(s, 5);
+  return shape;
+}
+
 Status separable(const Lens& lens, const std::vector<Judged>& judged) {
   std::vector<Eigen::Matrix3d> turns;
   std::vector<std::vector<Correspondence>> points;
@@ -167,7 +190,7 @@ Error too_few(std::size_t seen, const std::string& detail) {
 }
 
 // Final values on the points that count, with the freedom the data support.
-Result<LensCalibration> concluded(Solution& s) {
+Result<LensCalibration> concluded(Solution& s, const std::optional<TargetShape>& shape) {
   std::vector<PosedView> views = posed(s.judged, true);
   LensCalibration out;
   out.lens = s.lens;
@@ -180,10 +203,10 @@ Result<LensCalibration> concluded(Solution& s) {
     std::size_t points = 0;
     for (const PosedView& view : views) points += view.points.size();
     const double unknowns = 6.0 * static_cast<double>(views.size()) + 3 + selection.freedom.coefficients +
-                            (selection.freedom.aspect ? 1 : 0);
+                            (selection.freedom.aspect ? 1 : 0) + (shape ? 5 : 0);
     out.rms_px = std::sqrt(squared / static_cast<double>(points));
     out.noise_px = std::sqrt(squared / std::max(1.0, 2 * static_cast<double>(points) - unknowns));
-    covariance = lens_covariance(out.lens, views, selection.freedom, out.noise_px);
+    covariance = lens_covariance(out.lens, views, selection.freedom, out.noise_px, shape ? &*shape : nullptr);
     if (squared >= 0 && covariance && check(out.lens)) break;
     if (selection.freedom.coefficients == 0)
       return Error{ErrorKind::bad_input,
@@ -237,7 +260,7 @@ ViewResult result_of(const Lens& lens, const Judged& j, double gate_px) {
 
 }  // namespace
 
-Result<LensCalibration> calibrate_lens(const TargetViews& target_views) {
+Result<LensCalibration> calibrate_lens(const TargetViews& target_views, TargetTrust trust) {
   std::vector<Judged> judged;
   TargetViews usable{target_views.image_size, {}};
   for (const TargetView& view : target_views.views)
@@ -250,14 +273,7 @@ Result<LensCalibration> calibrate_lens(const TargetViews& target_views) {
 
   Solution s = best_start(usable, judged);
   if (!std::isfinite(s.noise_px)) return too_few(0, ": the others do not determine where the board is");
-  constexpr int kRounds = 10;
-  for (int round = 0; round < kRounds; ++round) {
-    s.noise_px = robust_adjust(s.lens, s.judged, {round == 0 ? 3 : 4, true, true}, round < 2 ? 30 : 15);
-    if (!std::isfinite(s.noise_px)) break;
-    const bool settled = judge(s.lens, s.judged, s.noise_px);
-    if (used_count(s.judged) < kFewestViews) break;
-    if (settled && round > 1) break;
-  }
+  settle(s, 10);
   // A hundredth of the image is not a detector's error: the numbers are not of one board and one lens.
   const double limit = 0.01 * std::max(target_views.image_size[0], target_views.image_size[1]);
   if (!(s.noise_px < limit))
@@ -267,8 +283,12 @@ Result<LensCalibration> calibrate_lens(const TargetViews& target_views) {
   if (used_count(s.judged) < kFewestViews)
     return too_few(used_count(s.judged), ": no one lens explains " + names_of(s.judged, false));
   if (const Status status = separable(s.lens, s.judged); !status) return status.error();
-  auto out = concluded(s);
+  std::optional<TargetShape> shape;
+  TargetViews shaped;
+  if (trust == TargetTrust::printed) shape = take_shape(s, usable, shaped);
+  auto out = concluded(s, shape);
   if (!out) return out.error();
+  out->shape = shape;
   std::size_t next = 0;
   for (const TargetView& view : target_views.views) {
     const bool known = view.points.size() >= kFewestPoints;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct LensCalibration {
   double held_out_rms_px = 0;              // the same for views that the lens was not fitted to
   double noise_px = 0;                     // standard deviation of a coordinate, degrees of freedom counted
   std::vector<ViewResult> views;           // in the order given
+  std::optional<TargetShape> shape;        // of the board, where it was asked for and the views support it
 };
 
 // Kannala–Brandt lens from views of a target, without an initial guess.
@@ -40,7 +42,11 @@ struct LensCalibration {
 // error (cross-validation by views) falls by more than 1 %; aspect: free where the corrected AIC asks for it.
 // bad_input names the view or the reason: fewer than 3 usable views, all views parallel, all points in the middle,
 // points that fit no lens.
-Result<LensCalibration> calibrate_lens(const TargetViews& target_views);
+// Whether the target's points are exact, or a printed grid whose stretch, shear and bow are to be found as far as
+// the views support it (corrected AIC). All views then show one board; turned by 180 degrees it is the same.
+enum class TargetTrust { exact, printed };
+Result<LensCalibration> calibrate_lens(const TargetViews& target_views,
+                                       TargetTrust trust = TargetTrust::exact);
 
 // Pose alone, the lens held: what a test view says of a lens. used is false where no pose is found.
 ViewResult fit_view(const Lens& lens, const TargetView& view);

@@ -87,6 +87,11 @@ ordered_json lens_report(const LensCalibration& calibration, const TargetViews& 
   out["coefficients"] = calibration.freedom.coefficients;
   out["aspect_free"] = calibration.freedom.aspect;
   out["projection_uncertainty"] = uncertainty_json(calibration);
+  if (calibration.shape) {
+    const auto& c = calibration.shape->change_mm;
+    out["board_shape_mm"] = {{"stretch", c[0]}, {"shear", c[1]}, {"bow_x", c[2]},
+                             {"bow_y", c[3]},   {"twist", c[4]}, {"half_width", calibration.shape->half_mm}};
+  }
   const Coverage coverage = coverage_of(calibration, target_views);
   out["coverage"] = {{"ring_deg", coverage.ring_deg},
                      {"sector_deg", 360.0 / static_cast<double>(Coverage::kSectors)},

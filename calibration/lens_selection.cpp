@@ -54,6 +54,17 @@ double held_out(const Lens& lens, const std::vector<PosedView>& views, const Len
 
 }  // namespace
 
+bool shape_is_supported(const Lens& lens, const std::vector<PosedView>& views, TargetShape& shape) {
+  double aic[2];
+  for (const bool shaped : {false, true}) {
+    Lens l = lens;
+    std::vector<PosedView> v = views;
+    const double error = adjust(l, v, {{}, kNone, 30}, shaped ? &shape : nullptr);
+    aic[shaped] = corrected_aic(error, count_points(views), views.size(), shaped ? 13 : 8);
+  }
+  return aic[1] < aic[0];
+}
+
 LensSelection select_freedom(const Lens& lens, const std::vector<PosedView>& views) {
   LensFreedom freedom;
   freedom.aspect = aspect_is_free(lens, views);

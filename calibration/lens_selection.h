@@ -14,6 +14,10 @@ struct LensSelection {
   double held_out_rms_px = 0;  // √mean(du² + dv²) of views that were not fitted to, their poses alone
 };
 
+// Whether the views ask for the board's shape: by the corrected Akaike criterion. views: with the points of the square
+// board; shape: in, the square one, out, the one found.
+bool shape_is_supported(const Lens& lens, const std::vector<PosedView>& views, TargetShape& shape);
+
 // Aspect by the corrected Akaike criterion (Hurvich and Tsai 1989). Coefficients by cross-validation in at most
 // five parts by views: dropped from the highest as long as the held-out error falls by more than
 // 1 %. Not the fewest: a coefficient

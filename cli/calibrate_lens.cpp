@@ -39,6 +39,11 @@ void print_text(const LensCalibration& c, const TargetViews& target_views, const
   for (int i = 0; i < c.freedom.coefficients; ++i)
     std::printf(" %.6f", c.lens.k[static_cast<std::size_t>(i)]);
   std::printf("\nerror             %.3f px rms, %.3f px on views held out\n", c.rms_px, c.held_out_rms_px);
+  if (c.shape)
+    std::printf(
+        "board             stretched by %.2f mm, sheared by %.2f mm, bent by up to %.2f mm on half its "
+        "width\n",
+        c.shape->change_mm[0], c.shape->change_mm[1], c.shape->change_mm.tail<3>().cwiseAbs().maxCoeff());
   std::printf("field             to %.1f degrees off axis\n", c.lens.max_theta_rad * 180 / kPi);
   if (const std::string gaps = coverage_gaps(c, target_views); !gaps.empty())
     std::printf("no points         %s\n", gaps.c_str());
@@ -84,7 +89,8 @@ int run(const LensOptions& options) {
   const auto input = read_input(options);
   if (!input) return fail(input.error());
   const TargetViews& target_views = input->views.target_views;
-  auto calibration = calibrate_lens(target_views);
+  auto calibration =
+      calibrate_lens(target_views, options.pictures.empty() ? TargetTrust::exact : TargetTrust::printed);
   if (!calibration) return fail({calibration.error().kind, input->name + calibration.error().message});
   for (std::size_t i = 0; i < input->views.reasons.size(); ++i)
     if (!input->views.reasons[i].empty()) calibration->views[i].reason = input->views.reasons[i];
