@@ -198,6 +198,39 @@ TEST(LensCalibration, ANarrowFieldGetsFewerCoefficientsAndStaysIncreasing) {
   }
 }
 
+TEST(LensCalibration, APrintedBoardsShapeIsFoundAndNoneIsInvented) {
+  const Lens lens = lens_of(180, 300, {-0.02, 0.004, -0.001, 0.0001});
+  test::BoardSetup setup = setup_of(lens);
+  setup.noise_px = 0;
+  auto views = test::board_views(lens, setup).target_views;
+  TargetShape shape = square_shape(views.views);
+  shape.change_mm << 0.3, 0.5, 0, 0.4, 0;
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0, 0.1);
+  for (auto& view : views.views) {
+    const ViewResult pose = fit_view(lens, view);
+    for (auto& p : view.points)
+      p.pixel =
+          lens.project(pose.pose.camera_from_target() * shape.place(p.target_mm) + pose.pose.translation_mm) +
+          Vec2d(noise(random), noise(random));
+  }
+  const auto exact = calibrate_lens(views);
+  const auto printed = calibrate_lens(views, TargetTrust::printed);
+  ASSERT_TRUE(exact.ok() && printed.ok());
+  EXPECT_FALSE(exact->shape);
+  ASSERT_TRUE(printed->shape);
+  // 3000 points of 0.1 px at some 0.7 px a millimetre: hundredths of a millimetre.
+  EXPECT_LT((printed->shape->change_mm - shape.change_mm).cwiseAbs().maxCoeff(), 0.05);
+  EXPECT_NEAR(printed->noise_px, 0.1, 0.005);
+  EXPECT_GT(exact->noise_px, 1.2 * printed->noise_px);  // what a shape that is not asked for leaves
+  const auto square =
+      calibrate_lens(test::board_views(lens, setup_of(lens)).target_views, TargetTrust::printed);
+  ASSERT_TRUE(square.ok());
+  if (square->shape) {
+    EXPECT_LT(square->shape->change_mm.cwiseAbs().maxCoeff(), 0.05);
+  }
+}
+
 TEST(LensStart, TheEpipoleOfTheViewsIsTheCentreOfTheLens) {
   const Lens lens = lens_of(180, 150, {0, 0, 0, 0}, 0.1);
   const auto centers = distortion_centers(test::board_views(lens, setup_of(lens)).target_views);
