@@ -44,7 +44,11 @@ Detection markers(const cv::Mat& grey, const Board& board) {
       board.kind == BoardKind::charuco ? find_charuco(grey, board) : find_aprilgrid(grey, board);
   std::vector<cv::Point2f> corners;
   for (const MarkerCorner& corner : found) corners.push_back(corner.pixel);
-  if (!corners.empty()) refine_corners(grey, nearest_px(corners), corners);
+  std::vector<double> room = nearest_px(corners);
+  // Beside a ChArUco corner stand the markers, half of what they leave of the pitch away.
+  const double free = board.kind == BoardKind::charuco ? (1 - board.marker_mm / board.pitch_mm) : 1;
+  for (double& px : room) px *= free;
+  refine_corners(grey, room, corners);
   for (std::size_t i = 0; i < corners.size(); ++i)
     out.points.push_back({found[i].target_mm, {corners[i].x, corners[i].y}});
   out.of_no_board = out.points.empty();
