@@ -143,6 +143,7 @@ ordered_json report_to_json(const ResponseReport& report) {
   out["covariance"] = covariance_of(fit);
   out["noise_scale"] = fit.noise_scale;
   out["degrees_of_freedom"] = fit.degrees;
+  out["t95"] = fit.t95;
   out["luminance_error"] = fit.luminance_error;
   out["selection"] = "AICc";
   out["models"] = ordered_json::array();

@@ -9,8 +9,8 @@
 namespace lightwell {
 namespace {
 
-struct DestroyEncoder {
-  void operator()(void* encoder) const { tjDestroy(encoder); }
+struct Destroy {
+  void operator()(void* coder) const { tjDestroy(coder); }
 };
 struct FreeBytes {
   void operator()(unsigned char* bytes) const { tjFree(bytes); }
@@ -22,7 +22,7 @@ Result<std::string> encode_jpeg(int width, int height, std::span<const std::uint
   verify_bug(width > 0 && height > 0 &&
                  rgb.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3,
              "JPEG of another size than its pixels");
-  const std::unique_ptr<void, DestroyEncoder> encoder(tjInitCompress());
+  const std::unique_ptr<void, Destroy> encoder(tjInitCompress());
   if (!encoder) return Error{ErrorKind::failed, std::string("cannot write JPEG: ") + tjGetErrorStr2(nullptr)};
   unsigned char* data = nullptr;
   unsigned long size = 0;
@@ -33,6 +33,31 @@ Result<std::string> encode_jpeg(int width, int height, std::span<const std::uint
   if (rc != 0)
     return Error{ErrorKind::failed, std::string("cannot write JPEG: ") + tjGetErrorStr2(encoder.get())};
   return std::string(reinterpret_cast<const char*>(data), size);
+}
+
+Result<JpegPicture> decode_jpeg(std::string_view bytes, const std::string& name, int shrink) {
+  verify_bug(shrink == 1 || shrink == 2 || shrink == 4 || shrink == 8, "JPEG shrunk by another factor");
+  constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
+  const std::unique_ptr<void, Destroy> decoder(tjInitDecompress());
+  if (!decoder) return Error{ErrorKind::failed, std::string("cannot read JPEG: ") + tjGetErrorStr2(nullptr)};
+  const auto bad = [&] {
+    return Error{ErrorKind::bad_input, name + ": is no whole JPEG picture: " + tjGetErrorStr2(decoder.get())};
+  };
+  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+  int width = 0, height = 0, subsampling = 0, colours = 0;
+  if (tjDecompressHeader3(decoder.get(), data, bytes.size(), &width, &height, &subsampling, &colours) != 0)
+    return bad();
+  if (std::int64_t{width} * height > kMostPixels)
+    return Error{ErrorKind::bad_input, name + ": " + std::to_string(width) + "x" + std::to_string(height) +
+                                           " pixels: allowed 2^28"};
+  const tjscalingfactor factor{1, shrink};
+  JpegPicture picture{TJSCALED(width, factor), TJSCALED(height, factor), {}};
+  picture.rgb.resize(static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) * 3);
+  constexpr int kTightRows = 0;
+  if (tjDecompress2(decoder.get(), data, bytes.size(), picture.rgb.data(), picture.width, kTightRows,
+                    picture.height, TJPF_RGB, TJFLAG_ACCURATEDCT) != 0)
+    return bad();
+  return picture;
 }
 
 }  // namespace lightwell

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "lighting/result.h"
 
@@ -12,5 +14,14 @@ namespace lightwell {
 
 // A picture for people. rgb: [height][width][3], sRGB; quality 1 to 100. Returns the file's bytes.
 Result<std::string> encode_jpeg(int width, int height, std::span<const std::uint8_t> rgb, int quality = 85);
+
+struct JpegPicture {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;  // [height][width][3]
+};
+// shrink: 1, 2, 4 or 8, each pixel the mean code of a square of so many. bad_input: not a JPEG, truncated, over 2^28
+// pixels.
+Result<JpegPicture> decode_jpeg(std::string_view bytes, const std::string& name_for_errors, int shrink = 1);
 
 }  // namespace lightwell

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "interface/jpeg.h"
+#include "lighting/response.h"
+#include "lighting/result.h"
+
+// The response of an ordinary camera from photographs of one scene at several exposures.
+namespace lightwell::calibration {
+
+struct Photograph {
+  std::string file;
+  JpegPicture picture;
+  double exposure_s = 0;
+  std::optional<double> f_number, iso;
+};
+
+// JPEG; exposure time, f-number and ISO from its EXIF data. exposure_s: instead of EXIF's, where above 0.
+// shrink: see decode_jpeg. bad_input: unreadable, not a JPEG, no exposure time anywhere.
+Result<Photograph> read_photograph(const std::filesystem::path& file, double exposure_s, int shrink);
+
+enum class BracketSolver { debevec, robertson };
+
+// How well the response from other exposures foretells a photograph that was not used.
+struct Prediction {
+  std::string file;
+  double exposure_s = 0;
+  double median_error = 0;  // relative, of the luminance of unclipped pixels
+  std::size_t pixels = 0;
+};
+
+struct BracketFit {
+  Response response;  // piecewise linear through the 8 bit codes, of green
+  std::vector<Prediction> predictions;
+  double median_error = 0;  // over the pixels of all of them
+  bool absolute = false;    // scaled by aperture and ISO (ISO 2720, K = 12.5); else 1 at code 118
+  std::array<double, 3> channel_spread = {0, 0,
+                                          0};  // median relative difference of each colour's curve from green
+};
+
+// OpenCV's Debevec–Malik or Robertson solver, given not single pixels but medians: what the pixels of one code in one
+// photograph have in the others. The curve is made to increase (pooling adjacent violators). The reported error is that
+// of exposures which were kept out of a fit and foretold by it; the response itself is of all. With more than some two
+// stops between neighbours the pictures overlap too little to tell the curve.
+// bad_input: fewer than 3 photographs or exposures, different sizes, codes that do not follow the exposures.
+Result<BracketFit> fit_brackets(std::vector<Photograph> photographs, BracketSolver solver);
+
+// Radiance of every pixel, [height][width][3], from the exposures in which it is neither dark nor clipped.
+std::vector<float> merge_brackets(const std::vector<Photograph>& photographs, const Response& response);
+
+nlohmann::ordered_json report_to_json(const BracketFit& fit);
+std::string bracket_response_file(const BracketFit& fit);
+
+}  // namespace lightwell::calibration

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "calibration/brackets.h"
+#include "cli/command.h"
+#include "cli/progress.h"
+#include "interface/atomic_file.h"
+#include "interface/exr_file.h"
+
+namespace lightwell::cli {
+namespace {
+
+struct Options {
+  std::vector<std::string> images;
+  std::vector<double> exposures;
+  std::string out, radiance, solver = "debevec";
+  bool json = false;
+};
+
+Result<std::vector<calibration::Photograph>> read_all(const Options& o) {
+  constexpr int kShrink = 4;  // a mean of 16 pixels: less noise, and a ninth picture still fits into memory
+  if (!o.exposures.empty() && o.exposures.size() != o.images.size())
+    return usage("--exposures: " + std::to_string(o.exposures.size()) +
+                 " values: allowed one for each of the " + std::to_string(o.images.size()) + " photographs");
+  std::vector<calibration::Photograph> photographs;
+  Progress progress(o.images.size());
+  for (std::size_t i = 0; i < o.images.size(); ++i) {
+    if (!o.exposures.empty() && !(o.exposures[i] > 0 && o.exposures[i] < 1e5))
+      return usage("--exposures: allowed seconds above 0, below 1e5");
+    auto photograph =
+        calibration::read_photograph(o.images[i], o.exposures.empty() ? 0 : o.exposures[i], kShrink);
+    if (!photograph) return photograph.error();
+    photographs.push_back(*std::move(photograph));
+    progress.done(i + 1);
+  }
+  return photographs;
+}
+
+int run(const Options& o) {
+  if (o.solver != "debevec" && o.solver != "robertson")
+    return fail(usage("--solver = " + o.solver.substr(0, 40) + ": allowed debevec, robertson"));
+  auto photographs = read_all(o);
+  if (!photographs) return fail(photographs.error());
+  const auto fit =
+      calibration::fit_brackets(*photographs, o.solver == "debevec" ? calibration::BracketSolver::debevec
+                                                                    : calibration::BracketSolver::robertson);
+  if (!fit) return fail(fit.error());
+  if (!o.radiance.empty()) {
+    const auto& picture = photographs->front().picture;
+    const auto exr =
+        exr_from_floats(picture.width, picture.height, "RGB",
+                        calibration::merge_brackets(*photographs, fit->response), ExrContent::picture);
+    if (!exr) return fail(exr.error());
+    if (const Status status = write_file_atomically(o.radiance, *exr); !status) return fail(status.error());
+  }
+  if (const Status status = write_file_atomically(o.out, calibration::bracket_response_file(*fit)); !status)
+    return fail(status.error());
+  if (o.json) {
+    std::printf("%s\n", calibration::report_to_json(*fit)
+                            .dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+                            .c_str());
+    return 0;
+  }
+  for (const auto& p : fit->predictions)
+    std::printf("%s  %10.6f s  foretold from the others to %.2f %% (median of %zu pixels)\n", p.file.c_str(),
+                p.exposure_s, 100 * p.median_error, p.pixels);
+  std::printf("median error %.2f %%; %s\n", 100 * fit->median_error,
+              fit->absolute ? "cd/m2 by aperture and ISO: check with `calibrate verify`"
+                            : "luminance in units of mid grey, as no aperture and ISO are known");
+  return 0;
+}
+
+}  // namespace
+
+Command add_calibrate_brackets(CLI::App& group) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = group.add_subcommand(
+      "brackets", "Fit an ordinary camera's response to photographs at several exposures");
+  command->footer("Example: lightwell calibrate brackets IMG_*.JPG --out response.json --radiance room.exr");
+  command->add_option("IMAGES", options->images, "JPEG photographs of one still scene, 3 or more")
+      ->required();
+  command->add_option("--out", options->out, "response.json to write")->required()->type_name("FILE");
+  command->add_option("--exposures", options->exposures, "Seconds, one a photograph; default: from EXIF")
+      ->delimiter(',')
+      ->type_name("S,S,...");
+  command->add_option("--solver", options->solver, "debevec (default) or robertson")->type_name("NAME");
+  command->add_option("--radiance", options->radiance, "The merged radiance, a quarter of the size")
+      ->type_name("FILE.exr");
+  command->add_flag("--json", options->json, "The report as JSON on stdout");
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace lightwell::cli

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "calibration/illuminance_check.h"
+#include "cli/command.h"
+#include "interface/calibration_io.h"
+#include "interface/environment_io.h"
+#include "interface/recording.h"
+
+namespace lightwell::cli {
+namespace {
+
+struct Options {
+  double lux = 0;
+  std::string environment, recording, calibration;
+  std::array<double, 3> toward = {0, 1, 0};
+  bool no_cosine = false, json = false;
+};
+
+Result<Calibration> calibration_for(const Options& o) {
+  if (!o.calibration.empty()) return read_calibration(o.calibration);
+  const auto reader = RecordingReader::open(o.recording);
+  if (!reader) return reader.error();
+  const std::string& text = (*reader)->header().calibration_json;
+  if (text.empty()) return usage("--calibration is missing, and " + o.recording + " carries none");
+  return calibration_from_json(text, o.recording + " (attached calibration.json)");
+}
+
+Result<calibration::RecordedIlluminance> measure(const Options& o, const calibration::Meter& meter) {
+  if (!o.environment.empty()) {
+    const auto environment = read_environment(o.environment);
+    if (!environment) return environment.error();
+    if (const std::string remark = environment->remark(o.environment); !remark.empty())
+      std::fprintf(stderr, "lightwell: %s\n", remark.c_str());
+    calibration::RecordedIlluminance out;
+    out.lux = calibration::illuminance_lux(environment->image, meter);
+    return out;
+  }
+  const auto calibration = calibration_for(o);
+  if (!calibration) return calibration.error();
+  return calibration::recorded_illuminance(o.recording, *calibration, meter);
+}
+
+int run(const Options& o) {
+  if (!(o.lux > 0 && o.lux <= 1e9)) return fail(usage("--lux: allowed above 0, at most 1e9"));
+  if (o.environment.empty() == o.recording.empty())
+    return fail(usage("one of --environment and --recording is needed"));
+  calibration::Meter meter;
+  meter.toward = Vec3d(o.toward[0], o.toward[1], o.toward[2]);
+  if (!(meter.toward.norm() > 0 && meter.toward.norm() < 1e9))
+    return fail(usage("--toward: allowed three numbers that are not all 0"));
+  meter.toward.normalize();
+  meter.cosine = !o.no_cosine;
+  const auto measured = measure(o, meter);
+  if (!measured) return fail(measured.error());
+  if (!(measured->lux > 0))
+    return fail({ErrorKind::bad_input,
+                 (o.environment.empty() ? o.recording : o.environment) +
+                     ": no light at all reaches the meter: allowed a map that is not black there"});
+  const double ratio = measured->lux / o.lux;
+  if (o.json) {
+    const nlohmann::ordered_json json = {{"schema", "lightwell.verify/1"},
+                                         {"meter_lux", o.lux},
+                                         {"map_lux", measured->lux},
+                                         {"map_sigma_lux", measured->sigma_lux},
+                                         {"error", ratio - 1},
+                                         {"stops", std::log2(ratio)},
+                                         {"scale", 1 / ratio},
+                                         {"frames", measured->frames},
+                                         {"clipped_pixels", measured->clipped},
+                                         {"measured_part", measured->measured_part}};
+    std::printf("%s\n", json.dump(2).c_str());
+    return 0;
+  }
+  std::printf("map %.6g lux, meter %.6g lux: error %+.2f %%, %+.3f stops (times %.6g would agree)\n",
+              measured->lux, o.lux, 100 * (ratio - 1), std::log2(ratio), 1 / ratio);
+  if (measured->clipped > 0)
+    std::printf("%llu pixels are clipped: there is more light than was measured\n",
+                static_cast<unsigned long long>(measured->clipped));
+  if (measured->measured_part < 0.99)
+    std::printf("only %.1f %% of what the meter sees lies in the lens's field\n",
+                100 * measured->measured_part);
+  return 0;
+}
+
+}  // namespace
+
+Command add_calibrate_verify(CLI::App& group) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      group.add_subcommand("verify", "Compare the integral of a map with a lux meter's reading");
+  command->footer(
+      "Example: lightwell calibrate verify --lux 903 --recording take.mkv --calibration calibration");
+  command->add_option("--lux", options->lux, "What the meter reads, lying level beside the probe")
+      ->required();
+  command->add_option("--environment", options->environment, "Latitude–longitude map, EXR or Radiance HDR")
+      ->type_name("ENV");
+  command->add_option("--recording", options->recording, "Take; every frame is developed")
+      ->type_name("TAKE.mkv");
+  command->add_option("--calibration", options->calibration, "Folder; default: the one in the take")
+      ->type_name("DIR");
+  command->add_option("--toward", options->toward, "Where the meter faces, default straight up (0,1,0)")
+      ->delimiter(',')
+      ->type_name("X,Y,Z");
+  command->add_flag("--no-cosine", options->no_cosine,
+                    "A diode that counts every direction of its hemisphere alike");
+  command->add_flag("--json", options->json, "Machine-readable result on stdout");
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace lightwell::cli
