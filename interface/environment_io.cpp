@@ -50,6 +50,8 @@ std::string EnvironmentImage::remark(const std::filesystem::path& file) const {
   if (not_finite > 0) what += std::to_string(not_finite) + " values are NaN or infinite";
   if (negative > 0) what += (what.empty() ? "" : ", ") + std::to_string(negative) + " values are negative";
   if (!what.empty()) what += "; read as 0";
+  if (converted)
+    what = "converted from the file's chromaticities to Rec. 709" + (what.empty() ? "" : "; " + what);
   // Odd sizes miss 2:1 by a pixel or two and mean no harm.
   if (std::abs(image.width - 2 * image.height) > std::max(2, image.width / 50))
     what = std::to_string(image.width) + "x" + std::to_string(image.height) +
@@ -59,12 +61,15 @@ std::string EnvironmentImage::remark(const std::filesystem::path& file) const {
 
 Result<EnvironmentImage> environment_from_bytes(std::string_view bytes, const std::string& name) {
   try {
-    Result<LatLongImage> image = is_exr(bytes) ? read_exr(bytes, name, kPixelLimit)
+    bool converted = false;
+    Result<LatLongImage> image = is_exr(bytes) ? read_exr(bytes, name, kPixelLimit, &converted)
                                  : is_radiance_hdr(bytes)
                                      ? read_radiance_hdr(bytes, name, kPixelLimit)
                                      : bad(name, "is neither an OpenEXR nor a Radiance HDR image");
     if (!image) return image.error();
-    return repair(std::move(image).value());
+    EnvironmentImage environment = repair(std::move(image).value());
+    environment.converted = converted;
+    return environment;
   } catch (const std::bad_alloc&) {
     return Error{ErrorKind::failed, name + ": not enough memory for the image"};
   } catch (const std::exception& error) {

@@ -16,15 +16,17 @@ struct EnvironmentImage {
   LatLongImage image;            // finite, ≥ 0
   std::uint64_t not_finite = 0;  // values that were NaN or ±∞, read as 0
   std::uint64_t negative = 0;    // values below 0, read as 0
-  // One line for a person: what was read as 0, and that the size is not 2:1 as a whole sphere's is (a square or
+  bool converted = false;        // from other primaries to Rec. 709: a colour outside of it is negative there
+  // One line for a person: what was read as 0, that colours were converted, and that the size is not 2:1 as a whole sphere's is (a square or
   // cross-shaped picture is probably not latitude–longitude). Empty where there is nothing to say.
   [[nodiscard]] std::string remark(const std::filesystem::path& file) const;
 };
 
 // Latitude–longitude EXR (any storage, tiled or mip-mapped: full resolution) or Radiance HDR (RGBE, rows from the top).
-// Channels R, G, B, plain or of a layer, those that are absent dark; else Y (or a lone channel) as R = G = B.
+// Colours in the primaries that an EXR's chromaticities attribute says, made Rec. 709, D65; a Radiance HDR's divided by
+// its EXPOSURE and COLORCORR. Channels R, G, B, plain or of a layer, those that are absent dark; else Y (or a lone channel) as R = G = B.
 // Any size from 1×1. bad_input: missing, a directory, unreadable, truncated, not an image, not latitude–longitude
-// (an EXR whose envmap attribute says cube), no colour channels, over 2^28 pixels.
+// (an EXR whose envmap attribute says cube), no colour channels, chromaticities that are no colour space, over 2^28 pixels.
 Result<EnvironmentImage> read_environment(const std::filesystem::path& file);
 // The same from a file's bytes; name_for_errors is the file.
 Result<EnvironmentImage> environment_from_bytes(std::string_view bytes, const std::string& name_for_errors);

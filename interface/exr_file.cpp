@@ -18,11 +18,15 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <new>
 #include <optional>
 #include <vector>
+
+#include "lighting/chromaticities.h"
 
 namespace lightwell {
 namespace {
@@ -203,6 +207,24 @@ std::vector<Rgb> read_data_window(Imf::InputPart& part, const ColourChannels& ch
   return pixels;
 }
 
+Chromaticities chromaticities_of(const Imf::Header& header) {
+  if (!Imf::hasChromaticities(header)) return {};
+  const Imf::Chromaticities& c = Imf::chromaticities(header);
+  const auto xy = [](const Imath::V2f& v) { return Eigen::Vector2d(v.x, v.y); };
+  return {xy(c.red), xy(c.green), xy(c.blue), xy(c.white)};
+}
+
+// A value that is not finite stays in its own channel, for the caller to judge.
+void convert(std::vector<Rgb>& pixels, const Eigen::Matrix3d& matrix) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  for (Rgb& pixel : pixels) {
+    const Rgb known = pixel.isFinite().select(pixel, Rgb::Zero());
+    const Eigen::Vector3d colour = matrix * known.matrix().cast<double>();
+    for (int c = 0; c < 3; ++c)
+      if (std::isfinite(pixel[c])) pixel[c] = static_cast<float>(std::clamp(colour[c], -kLargest, kLargest));
+  }
+}
+
 // The display window may be larger than the data window, or not cover it.
 LatLongImage place(std::vector<Rgb> pixels, const Window& data, const Window& display) {
   LatLongImage image{static_cast<int>(display.width), static_cast<int>(display.height), {}};
@@ -229,7 +251,8 @@ bool is_exr(std::string_view bytes) {
   return bytes.starts_with(kMagic);
 }
 
-Result<LatLongImage> read_exr(std::string_view bytes, const std::string& name, std::int64_t pixel_limit) {
+Result<LatLongImage> read_exr(std::string_view bytes, const std::string& name, std::int64_t pixel_limit,
+                              bool* converted) {
   if (!attributes_fit(bytes)) return bad(name, "truncated or damaged EXR header");
   try {
     MemoryInput memory(bytes, name);
@@ -241,9 +264,17 @@ Result<LatLongImage> read_exr(std::string_view bytes, const std::string& name, s
     for (auto c = header.channels().begin(); c != header.channels().end(); ++c) names.emplace_back(c.name());
     const auto channels = colour_channels(names);
     if (!channels) return bad(name, "no colour channels, expected R, G, B or Y");
+    const Chromaticities space = chromaticities_of(header);
+    const bool gray = (*channels)[0] == (*channels)[1] && (*channels)[0] == (*channels)[2];
+    const bool other = !gray && !is_rec709(space);
+    const auto to_rec709 = rec709_from(space);
+    if (other && !to_rec709)
+      return bad(name, "attribute chromaticities is no colour space: primaries on one line or no white");
     Imf::InputPart part(file, 0);
-    return place(read_data_window(part, *channels), window_of(header.dataWindow()),
-                 window_of(header.displayWindow()));
+    std::vector<Rgb> pixels = read_data_window(part, *channels);
+    if (other) convert(pixels, *to_rec709);
+    if (converted != nullptr) *converted = other;
+    return place(std::move(pixels), window_of(header.dataWindow()), window_of(header.displayWindow()));
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {

@@ -18,8 +18,10 @@ bool is_exr(std::string_view bytes);
 // value. Channels: see interface/environment_io.h. bad_input: truncated or damaged, deep, subsampled, no
 // colours, an envmap attribute that says cube, more than pixel_limit pixels. Memory grows with what the file
 // holds, not with what its header claims. fails by std::bad_alloc where memory is short
+// Colours of other chromaticities than Rec. 709's are converted (lighting/chromaticities.h), which may make some
+// negative; converted says whether they were. Where R = G = B by its channels, the value stays.
 Result<LatLongImage> read_exr(std::string_view bytes, const std::string& name_for_errors,
-                              std::int64_t pixel_limit);
+                              std::int64_t pixel_limit, bool* converted = nullptr);
 
 // What an image is of: written as the envmap attribute.
 enum class ExrContent { picture, lat_long_environment };

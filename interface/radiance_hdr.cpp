@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "interface/radiance_hdr.h"
 
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -103,28 +105,70 @@ bool read_row(Reader& reader, std::vector<Rgbe>& row) {
   return reader.read(marker) && read_coded_row(reader, row);
 }
 
-struct Size {
+struct Header {
   int width = 0;
   int height = 0;
+  Eigen::Array3d multiplier = Eigen::Array3d::Ones();  // of R, G, B since the radiance was measured
 };
 
+// Numbers with spaces around them, all above 0; none: other text.
+template <std::size_t count>
+std::optional<std::array<double, count>> positive_numbers(std::string_view text) {
+  const auto skip_spaces = [&] {
+    text.remove_prefix(std::min(text.find_first_not_of(" \t\r"), text.size()));
+  };
+  std::array<double, count> numbers{};
+  for (double& number : numbers) {
+    skip_spaces();
+    if (text.starts_with('+')) text.remove_prefix(1);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || !(number > 0) || !std::isfinite(number)) return std::nullopt;
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  }
+  skip_spaces();
+  return text.empty() ? std::optional(numbers) : std::nullopt;
+}
+
+// False where the line is an EXPOSURE or COLORCORR without its numbers. Each multiplies those before it. source:
+// Radiance file formats, "Picture File Format"
+bool multiply(Eigen::Array3d& multiplier, std::string_view line) {
+  constexpr std::string_view kExposure = "EXPOSURE=";
+  constexpr std::string_view kColour = "COLORCORR=";
+  if (line.starts_with(kExposure)) {
+    const auto exposure = positive_numbers<1>(line.substr(kExposure.size()));
+    if (exposure) multiplier *= (*exposure)[0];
+    return exposure.has_value();
+  }
+  if (line.starts_with(kColour)) {
+    const auto colour = positive_numbers<3>(line.substr(kColour.size()));
+    if (colour) multiplier *= Eigen::Array3d(colour->data());
+    return colour.has_value();
+  }
+  return true;
+}
+
 // The header's lines up to the empty one, then the resolution line.
-Result<Size> read_header(Reader& reader, const std::string& name) {
+Result<Header> read_header(Reader& reader, const std::string& name) {
   const auto bad = [&](const std::string& what) { return Error{ErrorKind::bad_input, name + ": " + what}; };
+  Header header;
   for (;;) {
     const auto line = reader.line();
     if (!line) return bad("damaged Radiance HDR header");
     if (line->empty()) break;
     if (line->starts_with("FORMAT=") && !line->starts_with("FORMAT=32-bit_rle_rgbe"))
       return bad("Radiance HDR " + std::string(*line) + ", expected FORMAT=32-bit_rle_rgbe");
+    if (!multiply(header.multiplier, *line))
+      return bad("Radiance HDR " + std::string(line->substr(0, 100)) + ", expected " +
+                 (line->starts_with("E") ? "a number" : "three numbers") + " above 0");
   }
+  if (!(header.multiplier > 0).all() || !header.multiplier.isFinite().all())
+    return bad("Radiance HDR EXPOSURE and COLORCORR lines multiply to no number above 0");
   const auto line = reader.line();
-  Size size;
   char tail = 0;
   if (!line || line->size() > 100 ||
-      std::sscanf(std::string(*line).c_str(), "-Y %9d +X %9d%c", &size.height, &size.width, &tail) < 2)
+      std::sscanf(std::string(*line).c_str(), "-Y %9d +X %9d%c", &header.height, &header.width, &tail) < 2)
     return bad("Radiance HDR resolution line, expected -Y HEIGHT +X WIDTH");
-  return size;
+  return header;
 }
 
 }  // namespace
@@ -136,20 +180,21 @@ bool is_radiance_hdr(std::string_view bytes) {
 Result<LatLongImage> read_radiance_hdr(std::string_view bytes, const std::string& name,
                                        std::int64_t pixel_limit) {
   Reader reader(bytes);
-  const auto size = read_header(reader, name);
-  if (!size) return size.error();
-  if (size->width < 1 || size->height < 1 || std::int64_t{size->width} * size->height > pixel_limit)
-    return Error{ErrorKind::bad_input, name + ": image size " + std::to_string(size->width) + "x" +
-                                           std::to_string(size->height) + ", allowed 1x1 to " +
+  const auto header = read_header(reader, name);
+  if (!header) return header.error();
+  if (header->width < 1 || header->height < 1 || std::int64_t{header->width} * header->height > pixel_limit)
+    return Error{ErrorKind::bad_input, name + ": image size " + std::to_string(header->width) + "x" +
+                                           std::to_string(header->height) + ", allowed 1x1 to " +
                                            std::to_string(pixel_limit) + " pixels"};
-  LatLongImage image{size->width, size->height, {}};
+  LatLongImage image{header->width, header->height, {}};
+  const Eigen::Array3f scale = (1 / header->multiplier).cast<float>();
   std::vector<Rgbe> row;
-  for (int y = 0; y < size->height; ++y) {
-    row.assign(static_cast<std::size_t>(size->width), Rgbe{});
+  for (int y = 0; y < header->height; ++y) {
+    row.assign(static_cast<std::size_t>(header->width), Rgbe{});
     if (!read_row(reader, row))
       return Error{ErrorKind::bad_input, name + ": truncated or damaged image data in row " +
-                                             std::to_string(y) + " of " + std::to_string(size->height)};
-    for (const Rgbe& pixel : row) image.pixels.push_back(radiance(pixel));
+                                             std::to_string(y) + " of " + std::to_string(header->height)};
+    for (const Rgbe& pixel : row) image.pixels.push_back(radiance(pixel) * scale);
   }
   return image;
 }

@@ -17,8 +17,9 @@ namespace lightwell {
 // "Picture File Format"
 bool is_radiance_hdr(std::string_view bytes);
 
-// Values as stored: an EXPOSURE line is not divided out, as other readers of environment images do not.
-// bad_input: truncated, damaged, not RGBE, another orientation than -Y +X, more than pixel_limit pixels.
+// Radiance before exposure: divided by the product of all EXPOSURE lines and, a channel, of all COLORCORR lines.
+// bad_input: truncated, damaged, not RGBE, another orientation than -Y +X, more than pixel_limit pixels, an EXPOSURE
+// or COLORCORR that is not above 0.
 Result<LatLongImage> read_radiance_hdr(std::string_view bytes, const std::string& name_for_errors,
                                        std::int64_t pixel_limit);
 

@@ -95,6 +95,16 @@ TEST(EnvironmentIo, ASizeThatIsNotTwoToOneIsSaidInTheSameLine) {
       "read as 0");
 }
 
+TEST(EnvironmentIo, AConversionIsSaidInTheSameLine) {
+  EnvironmentImage environment;
+  environment.image = random_image(2, 1);
+  environment.converted = true;
+  EXPECT_EQ(environment.remark("a.exr"), "a.exr: converted from the file's chromaticities to Rec. 709");
+  environment.negative = 2;
+  EXPECT_EQ(environment.remark("a.exr"),
+            "a.exr: converted from the file's chromaticities to Rec. 709; 2 values are negative; read as 0");
+}
+
 TEST(EnvironmentIo, WritingIntoAMissingFolderFails) {
   const Status status = write_environment("/nonexistent/a.exr", random_image(2, 1));
   ASSERT_FALSE(status);
@@ -138,6 +148,31 @@ TEST(RadianceHdr, ReadsFlatAndRunLengthCodedRows) {
                             "\x89\x20" + std::string("\x03\x81\x81\x81\x86\x81");
   const auto rle = environment_from_bytes(hdr("-Y 1 +X 9", coded), "c").value();
   for (int x = 0; x < 9; ++x) EXPECT_TRUE((rle.image.at(x, 0) == Rgb(1, 0.5f, 0.25f)).all()) << x;
+}
+
+TEST(RadianceHdr, ExposureAndColourCorrectionAreDividedOut) {
+  // (128, 64, 32) · 2^(129 − 136) = (1, 0.5, 0.25); powers of two divide exactly
+  const auto first_pixel = [](const std::string& lines) {
+    const auto read = environment_from_bytes(
+        "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n" + lines + "\n-Y 1 +X 1\n\x80\x40\x20\x81", "f.hdr");
+    return read ? read->image.at(0, 0) : Rgb::Constant(-1);
+  };
+  EXPECT_TRUE((first_pixel("EXPOSURE=1\n") == Rgb(1, 0.5f, 0.25f)).all());
+  EXPECT_TRUE((first_pixel("EXPOSURE=4\n") == Rgb(0.25f, 0.125f, 0.0625f)).all());
+  EXPECT_TRUE((first_pixel("EXPOSURE=  4.0 \nEXPOSURE=+1.25e-1\n") == Rgb(2, 1, 0.5f)).all());
+  EXPECT_TRUE((first_pixel("COLORCORR= 1 2 0.5\n") == Rgb(1, 0.25f, 0.5f)).all());
+  EXPECT_TRUE(
+      (first_pixel("COLORCORR=1 2 .5\nEXPOSURE=2\nCOLORCORR=2 1 1\n") == Rgb(0.25f, 0.125f, 0.25f)).all());
+}
+
+TEST(RadianceHdr, AnExposureThatIsNoMultiplierIsBadInput) {
+  for (const char* line :
+       {"EXPOSURE=0", "EXPOSURE=-1", "EXPOSURE=nan", "EXPOSURE=inf", "EXPOSURE=", "EXPOSURE=a",
+        "EXPOSURE=1 2", "EXPOSURE=1e999", "COLORCORR=1 2", "COLORCORR=1 0 1", "COLORCORR=1 1 1 1"})
+    expect_bad(environment_from_bytes("#?RADIANCE\n" + std::string(line) + "\n\n-Y 1 +X 1\nabcd", "f.hdr"),
+               line);
+  expect_bad(environment_from_bytes("#?RADIANCE\nEXPOSURE=1e300\nEXPOSURE=1e300\n\n-Y 1 +X 1\nabcd", "f.hdr"),
+             "EXPOSURE");
 }
 
 TEST(RadianceHdr, DamageIsBadInputWithOneLine) {

@@ -18,7 +18,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
+#include <limits>
 
 #include "interface/atomic_file.h"
 #include "interface/environment_io.h"
@@ -261,6 +263,70 @@ TEST(ExrFile, WrittenPictureReadsTheSameElsewhere) {
   ASSERT_TRUE(input->read_image(0, 0, 0, 4, OIIO::TypeDesc::FLOAT, back.data()));
   EXPECT_EQ(back, pixels);
   EXPECT_EQ(input->spec().get_string_attribute("textureformat"), "");
+}
+
+// One pixel; R, G, B are 0, 512 and 1024, as sample() has them.
+std::string one_pixel(const std::vector<std::string>& names, const Imf::Chromaticities& space) {
+  Imf::Header header = header_with(1, 1, names);
+  Imf::addChromaticities(header, space);
+  return scan_lines(header, names);
+}
+
+const Imf::Chromaticities kRec2020({0.708f, 0.292f}, {0.170f, 0.797f}, {0.131f, 0.046f}, {0.3127f, 0.3290f});
+
+TEST(ExrFile, OtherChromaticitiesBecomeRec709) {
+  bool converted = false;
+  const auto image = read_exr(one_pixel({"R", "G", "B"}, kRec2020), "a", kLimit, &converted);
+  ASSERT_TRUE(image) << image.error().message;
+  EXPECT_TRUE(converted);
+  // ITU-R BT.2407-0, section 2, whose four digits are good to 5e-5 of 512 and of 1024 each.
+  constexpr float kDigits = 5e-5f * (512 + 1024);
+  EXPECT_NEAR(image->at(0, 0)[0], -0.5876f * 512 - 0.0728f * 1024, kDigits);
+  EXPECT_NEAR(image->at(0, 0)[1], 1.1329f * 512 - 0.0083f * 1024, kDigits);
+  EXPECT_NEAR(image->at(0, 0)[2], -0.1006f * 512 + 1.1187f * 1024, kDigits);
+  const auto environment = environment_from_bytes(one_pixel({"R", "G", "B"}, kRec2020), "a");
+  ASSERT_TRUE(environment);
+  EXPECT_TRUE(environment->converted);
+  EXPECT_EQ(environment->negative, 1u);  // a colour that Rec. 709 has not
+  EXPECT_EQ(environment->image.at(0, 0)[0], 0);
+}
+
+TEST(ExrFile, Rec709ChromaticitiesAndGrayChangeNothing) {
+  bool converted = true;
+  expect_samples(read_exr(one_pixel({"R", "G", "B"}, Imf::Chromaticities()), "a", kLimit, &converted), 1, 1,
+                 {0, 1, 2});
+  EXPECT_FALSE(converted);
+  converted = true;
+  expect_samples(read_exr(one_pixel({"Y"}, kRec2020), "a", kLimit, &converted), 1, 1, {0, 0, 0});
+  EXPECT_FALSE(converted);
+}
+
+TEST(ExrFile, ChromaticitiesThatAreNoColourSpaceAreBadInput) {
+  const Imath::V2f point(0.3f, 0.3f);
+  const Imf::Chromaticities line(point, point, point, point);
+  expect_bad(read_exr(one_pixel({"R", "G", "B"}, line), "a.exr", kLimit), "a.exr: attribute chromaticities");
+}
+
+TEST(ExrFile, AValueThatIsNotFiniteStaysInItsChannelThroughAConversion) {
+  Imf::Header header = header_with(1, 1, {"R", "G", "B"});
+  Imf::addChromaticities(header, kRec2020);
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.exr";
+  std::array<float, 3> values = {std::numeric_limits<float>::infinity(), 1, 1};
+  {
+    Imf::FrameBuffer frame;
+    for (std::size_t c = 0; c < 3; ++c)
+      frame.insert(std::string(1, "RGB"[c]), Imf::Slice::Make(Imf::FLOAT, &values[c], header.dataWindow()));
+    Imf::OutputFile out(file.c_str(), header, 0);
+    out.setFrameBuffer(frame);
+    out.writePixels(1);
+  }
+  const auto environment = read_environment(file);
+  ASSERT_TRUE(environment) << environment.error().message;
+  EXPECT_EQ(environment->not_finite, 1u);
+  EXPECT_EQ(environment->negative, 0u);
+  EXPECT_EQ(environment->image.at(0, 0)[0], 0);
+  EXPECT_GT(environment->image.at(0, 0)[1], 1);
 }
 
 TEST(ExrFile, WrittenEnvironmentSaysWhatItIsElsewhere) {
