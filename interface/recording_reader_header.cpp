@@ -42,13 +42,17 @@ Result<MatroskaReader::Open> MatroskaReader::open_container() const {
     return bad(errno == EISDIR   ? std::string("is a directory, expected a take (.mkv)")
                : errno == EINVAL ? std::string("is not a file")
                                  : std::string("cannot read: ") + std::strerror(errno));
-  if (!find_segment_end(open.file->fd())) return bad("is not a Matroska file, or cut within its first bytes");
+  const auto end = find_segment_end(open.file->fd());
+  if (!end) return bad("is not a Matroska file, or cut within its first bytes");
   AVFormatContext* context = avformat_alloc_context();
   verify_bug(context != nullptr, "out of memory");
   context->pb = open.file->io();
   context->flags |= AVFMT_FLAG_CUSTOM_IO;
   // The format is given, not guessed: nothing but Matroska is ever opened.
   const int code = avformat_open_input(&context, "", av_find_input_format("matroska"), nullptr);
+  const bool ends_early = code == AVERROR(EIO) || code == AVERROR_EOF;
+  if (code < 0 && ends_early && open.file->error() == 0 && (!end->has_proper_end || end->missing_bytes > 0))
+    return bad("cut within its header, before any frame");
   if (code < 0) return bad("cannot be read as Matroska: " + av_error_text(code));
   open.container = Container(context, [](AVFormatContext* closing) { avformat_close_input(&closing); });
   context->max_index_size = 1u << 30;  // the index counts the frames; a long take's must not be thinned

@@ -89,6 +89,21 @@ TEST_P(DamagedRecording, CutAnywhereDeliversWholeFramesAndThenSaysWhatIsWrong) {
   EXPECT_EQ(delivered_before, kFrames);  // the last cuts fall into the index behind all frames
 }
 
+TEST_P(DamagedRecording, ACutBeforeTheFirstClusterIsCalledACutHeader) {
+  const std::size_t cluster = bytes_.find("\x1F\x43\xB6\x75");  // Matroska's Cluster, RFC 9559
+  ASSERT_NE(cluster, std::string::npos);
+  constexpr std::size_t kSegmentStarts = 64;  // before it the file is not known as Matroska
+  for (std::size_t cut = kSegmentStarts; cut < cluster; cut += 13) {
+    SCOPED_TRACE("cut at " + std::to_string(cut) + " of " + std::to_string(cluster));
+    test::write_bytes(broken_, bytes_.substr(0, cut));
+    const auto reader = RecordingReader::open(broken_);
+    ASSERT_FALSE(reader);
+    EXPECT_EQ(reader.error().kind, ErrorKind::bad_input);
+    EXPECT_NE(reader.error().message.find("cut within its header"), std::string::npos)
+        << reader.error().message;
+  }
+}
+
 TEST_P(DamagedRawRecording, EveryFrameBeforeACutIsDelivered) {
   for (std::size_t i = 0; i < kFrames; ++i) {
     const std::size_t end = end_of_codes(i);
