@@ -17,6 +17,7 @@
 #include "daemon/simulator/probe_setup.h"
 #include "daemon/simulator/truth_file.h"
 #include "interface/calibration_io.h"
+#include "interface/printable.h"
 
 // lightwell-camera: a GigE Vision camera that looks at known light.
 namespace lightwell::simulator {
@@ -32,7 +33,7 @@ struct CommandLine {
 };
 
 int fail(const Error& error) {
-  std::fprintf(stderr, "lightwell-camera: %s\n", error.message.c_str());
+  std::fprintf(stderr, "lightwell-camera: %s\n", printable(error.message).c_str());
   return static_cast<int>(error.kind);
 }
 
@@ -149,7 +150,7 @@ int run(CommandLine& c) {
   auto setup = set_up_probe(c.probe);
   if (!setup) return fail(setup.error());
   for (const std::string& message : setup->messages)
-    std::fprintf(stderr, "lightwell-camera: %s\n", message.c_str());
+    std::fprintf(stderr, "lightwell-camera: %s\n", printable(message).c_str());
   if (!c.calibration_folder.empty())
     if (const Status status = write_calibration(c.calibration_folder, setup->model.calibration); !status)
       return fail(status.error());
