@@ -59,6 +59,7 @@ class RecordingWriter {
   virtual Status write(const RecordedFrame& frame, std::span<const std::byte> codes) = 0;
   // Writes what is still in memory: for a caller who knows that frames pause.
   virtual Status flush() = 0;
+  // Removes a take without frames, which nothing could read, and fails saying so.
   virtual Status close() = 0;
   [[nodiscard]] virtual std::uint64_t frames() const = 0;
   [[nodiscard]] virtual std::uint64_t bytes() const = 0;

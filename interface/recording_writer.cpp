@@ -4,6 +4,7 @@ extern "C" {
 #include <libavutil/opt.h>
 }
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -58,6 +59,8 @@ class MatroskaWriter final : public RecordingWriter {
   std::int64_t next_pts(const RecordedFrame& frame);
   Status end_cluster();
   Status give_up(int code);
+  Status remove_without_frames();
+  [[nodiscard]] bool unlink_own() const;
   [[nodiscard]] Error failure(const std::string& what) const {
     return {ErrorKind::failed, path_.string() + ": " + what};
   }
@@ -299,21 +302,46 @@ Status MatroskaWriter::flush() {
 // The disk is full or gone: cut what is half written, keep what is whole.
 Status MatroskaWriter::give_up(int code) {
   error_ = failure(std::string("cannot write: ") +
-                   (file_->error() != 0 ? std::strerror(file_->error()) : av_error_text(code)) +
-                   "; the take is kept up to its last whole cluster");
+                   (file_->error() != 0 ? std::strerror(file_->error()) : av_error_text(code)));
   sync_.reset();
   container_.reset();
-  if (::ftruncate(file_->fd(), static_cast<off_t>(whole_bytes_)) != 0)
-    error_->message += std::string(" (and cannot be cut back to it: ") + std::strerror(errno) + ")";
+  if (whole_frames_ == 0) {
+    error_->message += unlink_own() ? "; no frame was whole, the file is removed" : "; no frame was whole";
+    whole_bytes_ = 0;
+  } else if (::ftruncate(file_->fd(), static_cast<off_t>(whole_bytes_)) == 0) {
+    error_->message += "; the take is kept up to its last whole cluster";
+  } else {
+    error_->message +=
+        std::string("; the take cannot be cut to its last whole cluster: ") + std::strerror(errno);
+  }
   file_.reset();
   frames_ = whole_frames_;
   pending_bytes_ = 0;
   return *error_;
 }
 
+// Nothing reads a take without frames.
+Status MatroskaWriter::remove_without_frames() {
+  sync_.reset();
+  container_.reset();
+  error_ = failure(unlink_own() ? "no frame came, the file is removed" : "no frame came");
+  file_.reset();
+  whole_bytes_ = 0;
+  return *error_;
+}
+
+// Only the file that is open here; another may have got its name meanwhile.
+bool MatroskaWriter::unlink_own() const {
+  struct stat own {};
+  struct stat named {};
+  return ::fstat(file_->fd(), &own) == 0 && ::stat(path_.c_str(), &named) == 0 &&
+         own.st_dev == named.st_dev && own.st_ino == named.st_ino && ::unlink(path_.c_str()) == 0;
+}
+
 Status MatroskaWriter::close() {
   if (error_) return *error_;
   if (!file_) return {};
+  if (frames_ == 0) return remove_without_frames();
   if (Status status = end_cluster(); !status) return status;
   const int code = av_write_trailer(container_.get());
   avio_flush(file_->io());

@@ -17,7 +17,8 @@ bool is_plain(char c) {
 Status check_take_name(const std::string& file) {
   constexpr std::size_t kLongest = 128;
   if (std::all_of(file.begin(), file.end(), is_plain) && file.size() > 4 && file.size() <= kLongest &&
-      file.front() != '.' && file.front() != '-' && file.ends_with(".mkv"))
+      file.find_first_not_of(' ') != file.size() - 4 && file.front() != '.' && file.front() != '-' &&
+      file.ends_with(".mkv"))
     return {};
   std::string shown = file.substr(0, kLongest);
   std::replace_if(

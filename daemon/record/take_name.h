@@ -9,7 +9,8 @@
 namespace lightwell {
 
 inline constexpr const char* kTakeNameRule =
-    "letters, digits, '.', '_', '-' and spaces, no leading '.' or '-', ends in .mkv, 128 at most";
+    "letters, digits, '.', '_', '-' and spaces, not only spaces, no leading '.' or '-', ends in .mkv, 128 at "
+    "most";
 
 // Whether a take may have this name inside the record directory, where anybody on this machine may ask for
 // one: a plain name that no shell, terminal or file system takes for more (interface/openapi.yaml). usage,

@@ -122,7 +122,7 @@ TEST(Recorder, OnlyPlainNewNamesInsideItsDirectory) {
         std::string("/etc/take.mkv"), std::string("../take.mkv"), std::string("a/b.mkv"),
         std::string(".hidden.mkv"), std::string("a\nb.mkv"), std::string("a\0b.mkv", 7),
         std::string("-a.mkv"), std::string("\xc3\xa9.mkv"), std::string("a;b.mkv"),
-        std::string(125, 'x') + ".mkv"}) {
+        std::string(125, 'x') + ".mkv", std::string(" .mkv"), std::string("   .mkv")}) {
     const Status status = recorder.start(file, header());
     ASSERT_FALSE(status) << file;
     EXPECT_EQ(status.error().kind, ErrorKind::usage) << file;
@@ -246,6 +246,54 @@ TEST(Recorder, FullDiskEndsTheTakeReadableAndKeepsTheReason) {
   const auto reader = RecordingReader::open(folder.path() / "take.mkv");
   ASSERT_TRUE(reader) << reader.error().message;
   EXPECT_GE(test::read_all(**reader).frames.size(), 20u);
+}
+
+TEST(Recorder, ATakeWithoutFramesIsRemovedAndSaidSo) {
+  const TemporaryFolder folder;
+  Recorder recorder(folder.path());
+  ASSERT_TRUE(recorder.start("take.mkv", header()));
+  const Status stopped = recorder.stop();
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().kind, ErrorKind::failed);
+  EXPECT_NE(stopped.error().message.find("no frame came, the file is removed"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  EXPECT_EQ(recorder.stats().bytes, 0u);
+  EXPECT_TRUE(recorder.start("take.mkv", header()));  // the name is free again
+}
+
+TEST(Recorder, ATakeWithoutFramesRemovesNoFileThatGotItsNameMeanwhile) {
+  const TemporaryFolder folder;
+  Recorder recorder(folder.path());
+  ASSERT_TRUE(recorder.start("take.mkv", header()));
+  std::filesystem::rename(folder.path() / "take.mkv", folder.path() / "moved.mkv");
+  test::write_bytes(folder.path() / "take.mkv", "precious");
+  EXPECT_FALSE(recorder.stop());
+  EXPECT_EQ(test::file_bytes(folder.path() / "take.mkv"), "precious");
+}
+
+TEST(Recorder, AFullDiskBeforeTheFirstWholeFrameLeavesNoFileAndClaimsNone) {
+  const TemporaryFolder folder;
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{100, 100};  // less than a take's header
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    Recorder recorder(folder.path());
+    if (recorder.start("take.mkv", header())) {  // what is buffered reaches the disk with the first cluster
+      const TakeFrame frame = test::take_frame(kFormat, 0);
+      recorder.offer(info_of(frame), frame.codes);
+      const Status stopped = recorder.stop();
+      if (stopped) ::_exit(1);
+      if (stopped.error().message.find("kept") != std::string::npos) ::_exit(2);
+      if (stopped.error().message.find("removed") == std::string::npos) ::_exit(3);
+    }
+    ::_exit(std::filesystem::is_empty(folder.path()) ? 0 : 4);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0) << "see the exit codes above";
 }
 
 TEST(FrameRing, IsFullWithItsCapacityAndEmptyAgainInOrder) {
