@@ -6,6 +6,8 @@
 #include <event2/buffer.h>
 #include <event2/event.h>
 #include <event2/http.h>
+#include <event2/keyvalq_struct.h>
+#include <event2/util.h>
 #include <signal.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
@@ -17,6 +19,7 @@
 #include <deque>
 #include <mutex>
 #include <optional>
+#include <string_view>
 #include <thread>
 
 #include "daemon/web/answers.h"
@@ -86,14 +89,43 @@ void add_common_headers(evhttp_request* request) {
                     "default-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'");
 }
 
+bool is_head(evhttp_request* request) {
+  return evhttp_request_get_command(request) == EVHTTP_REQ_HEAD;
+}
+
+std::size_t host_headers(evhttp_request* request) {
+  std::size_t count = 0;
+  for (const evkeyval* h = evhttp_request_get_input_headers(request)->tqh_first; h != nullptr;
+       h = h->next.tqe_next)
+    count += evutil_ascii_strcasecmp(h->key, "Host") == 0 ? 1 : 0;
+  return count;
+}
+
+// libevent takes what follows "//" for a host, but a request line that begins with '/' is a path (RFC 9112, 3.2.1).
+bool has_doubled_root(evhttp_request* request) {
+  const char* given = evhttp_request_get_uri(request);
+  return given != nullptr && std::string_view(given).starts_with("//");
+}
+
+// A HEAD gets the headers of the same GET (RFC 9110, 9.3.2).
 void send(evhttp_request* request, const WebAnswer& answer) {
   add_common_headers(request);
   evkeyvalq* headers = evhttp_request_get_output_headers(request);
   evhttp_add_header(headers, "Content-Type", answer.type);
   evbuffer* buffer = evbuffer_new();
-  evbuffer_add(buffer, answer.body.data(), answer.body.size());
+  if (is_head(request))
+    evhttp_add_header(headers, "Content-Length", std::to_string(answer.body.size()).c_str());
+  else
+    evbuffer_add(buffer, answer.body.data(), answer.body.size());
   evhttp_send_reply(request, answer.status, reason(answer.status), buffer);
   evbuffer_free(buffer);
+}
+
+// A stream has no length to tell.
+void send_stream_head(evhttp_request* request) {
+  add_common_headers(request);
+  evhttp_add_header(evhttp_request_get_output_headers(request), "Content-Type", "text/event-stream");
+  evhttp_send_reply(request, 200, reason(200), nullptr);
 }
 
 }  // namespace
@@ -267,12 +299,14 @@ void WebServer::Impl::on_wake() {
 }
 
 std::optional<WebAnswer> WebServer::Impl::refuse(evhttp_request* request) {
+  if (host_headers(request) > 1) return error_answer(400, "more than one Host header");
   const std::string request_host = header(request, "Host");
   const std::string origin = header(request, "Origin");
   const evhttp_uri* uri = evhttp_request_get_evhttp_uri(request);
-  const bool foreign = !is_loopback_host_header(request_host) ||
-                       (uri != nullptr && evhttp_uri_get_host(uri) != nullptr) ||
-                       (!origin.empty() && !is_own_origin(origin, request_host));
+  const bool foreign =
+      !is_loopback_host_header(request_host) ||
+      (uri != nullptr && evhttp_uri_get_host(uri) != nullptr && !has_doubled_root(request)) ||
+      (!origin.empty() && !is_own_origin(origin, request_host));
   if (!foreign) return std::nullopt;
   ++counters.refused;
   return error_answer(403, "only pages of this server on this machine may ask (Host and Origin)");
@@ -289,14 +323,16 @@ void WebServer::Impl::handle(evhttp_request* request) {
   const bool is_record = path == "/api/v1/record";
   const bool is_stream = path == "/api/v1/stream";
   const auto page = answers.find(path);
-  if (!is_record && !is_stream && !page)
+  if (has_doubled_root(request) || (!is_record && !is_stream && !page))
     return send(request, error_answer(404, "there is nothing at this path"));
-  if (evhttp_request_get_command(request) != (is_record ? EVHTTP_REQ_POST : EVHTTP_REQ_GET)) {
-    const char* allowed = is_record ? "POST" : "GET";
+  const evhttp_cmd_type method = evhttp_request_get_command(request);
+  if (is_record ? method != EVHTTP_REQ_POST : method != EVHTTP_REQ_GET && method != EVHTTP_REQ_HEAD) {
+    const char* allowed = is_record ? "POST" : "GET, HEAD";
     evhttp_add_header(evhttp_request_get_output_headers(request), "Allow", allowed);
     return send(request, error_answer(405, std::string("this path takes ") + allowed));
   }
   if (is_record) return send(request, answers.record(body_of(request)));
+  if (is_stream && is_head(request)) return send_stream_head(request);
   if (is_stream) return open_stream(request);
   counters.stream_clients = streams.count();
   counters.stream_dropped = streams.dropped();

@@ -53,6 +53,27 @@ class WebServerTest : public testing::Test {
     return ask({.method = "POST", .path = "/api/v1/record", .body = body});
   }
 
+  // All that comes back for the request line and `Host: localhost`, as bytes.
+  [[nodiscard]] std::string exchange(const std::string& line, const std::string& headers = "") const {
+    const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+    const timeval patience{20, 0};
+    ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(static_cast<std::uint16_t>(server_->port()));
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(::connect(socket, reinterpret_cast<sockaddr*>(&to), sizeof to), 0);
+    const std::string request =
+        line + " HTTP/1.1\r\nHost: localhost\r\n" + headers + "Connection: close\r\n\r\n";
+    EXPECT_EQ(::send(socket, request.data(), request.size(), 0), static_cast<ssize_t>(request.size()));
+    std::string answer;
+    char buffer[65536];
+    for (ssize_t n = 0; (n = ::recv(socket, buffer, sizeof buffer, 0)) > 0;)
+      answer.append(buffer, static_cast<std::size_t>(n));
+    ::close(socket);
+    return answer;
+  }
+
   SnapshotChannel channel_{test::snapshot_shape()};
   test::FakeControl control_;
   std::unique_ptr<WebServer> server_;
@@ -308,8 +329,8 @@ TEST_F(WebServerTest, ForeignHostOrOriginIsRefusedEverywhere) {
          {"http://evil.example", "null", "http://localhost:1", "https://127.0.0.1"})
       EXPECT_EQ(ask({.path = path, .headers = {{"Origin", origin}}}).status, 403) << path << " " << origin;
   }
-  for (const char* elsewhere : {"http://evil.example/api/v1/status", "//evil.example/api/v1/status"})
-    EXPECT_EQ(get(elsewhere).status, 403) << elsewhere;
+  EXPECT_EQ(get("http://evil.example/api/v1/status").status, 403);
+  EXPECT_EQ(get("//evil.example/api/v1/status").status, 404);  // a path, of which there is none
   EXPECT_EQ(ask({.path = "/api/v1/status", .headers = {{"Origin", own}}}).status, 200);
   EXPECT_EQ(ask({.path = "/api/v1/status", .headers = {{"Host", "localhost:9"}}}).status, 200);
   const std::string start = R"({"action": "start", "file": "a.mkv"})";
@@ -363,15 +384,44 @@ TEST_F(WebServerTest, OversizedBodyIs413) {
 }
 
 TEST_F(WebServerTest, OtherMethodsAre405AndOtherPaths404) {
-  for (const char* method : {"HEAD", "PUT", "DELETE", "OPTIONS", "PATCH", "POST"})
+  for (const char* method : {"PUT", "DELETE", "OPTIONS", "PATCH", "POST"})
     EXPECT_EQ(ask({.method = method, .path = "/api/v1/status"}).status, 405) << method;
   EXPECT_EQ(get("/api/v1/record").status, 405);
-  for (const char* path : {"/nothing", "/api/v1/status/", "/api/v2/status", "/../etc/passwd",
-                           "/index.html/..", "/openapi.yaml", "/%2e%2e/etc/passwd"}) {
+  for (const char* path :
+       {"/nothing", "/api/v1/status/", "/api/v2/status", "/../etc/passwd", "/index.html/..", "/openapi.yaml",
+        "/%2e%2e/etc/passwd", "//", "//api/v1/status", "//api/v1/record"}) {
     const auto response = get(path);
     EXPECT_EQ(response.status, 404) << path;
     EXPECT_TRUE(json::parse(response.body).contains("error"));
   }
+}
+
+TEST_F(WebServerTest, HeadIsGetWithoutTheBody) {
+  publish(channel_, 1);
+  const std::regex length("Content-Length: ([0-9]+)\r\n");
+  const std::regex date("Date: [^\r]*\r\n");
+  for (const std::string path : {"/", "/page.js", "/api/v1/lights", "/api/v1/environment.exr", "/nothing"}) {
+    const std::string got = exchange("GET " + path);
+    const std::string head = exchange("HEAD " + path);
+    const auto end = got.find("\r\n\r\n");
+    ASSERT_NE(end, std::string::npos) << path;
+    EXPECT_EQ(std::regex_replace(head, date, ""), std::regex_replace(got.substr(0, end + 4), date, ""))
+        << path;
+    std::smatch said;
+    ASSERT_TRUE(std::regex_search(head, said, length)) << head;
+    EXPECT_EQ(std::stoul(said[1]), got.size() - end - 4) << path;
+  }
+  const std::string stream = exchange("HEAD /api/v1/stream");
+  EXPECT_THAT(stream, testing::StartsWith("HTTP/1.1 200 OK\r\n"));
+  EXPECT_THAT(stream, HasSubstr("Content-Type: text/event-stream\r\n"));
+  EXPECT_THAT(stream, testing::EndsWith("\r\n\r\n"));
+  EXPECT_THAT(exchange("HEAD /api/v1/record"), testing::StartsWith("HTTP/1.1 405 "));
+}
+
+TEST_F(WebServerTest, MoreThanOneHostIs400) {
+  EXPECT_THAT(exchange("GET /api/v1/status", "host: localhost\r\n"), testing::StartsWith("HTTP/1.1 400 "));
+  EXPECT_THAT(exchange("GET /api/v1/status", "Host: evil.example\r\n"), testing::StartsWith("HTTP/1.1 400 "));
+  EXPECT_THAT(exchange("GET /api/v1/status"), testing::StartsWith("HTTP/1.1 200 "));
 }
 
 TEST_F(WebServerTest, CurlAgrees) {
