@@ -32,4 +32,10 @@ std::string alarm_for(const DaemonStatus& status) {
   return {};
 }
 
+std::string calibration_change(const std::string& before, const std::string& now) {
+  if (before == now) return {};
+  if (now.empty()) return "calibration: fits the frames again, light is published";
+  return "calibration: does not fit the frames, no light is published: " + now;
+}
+
 }  // namespace lightwell

@@ -8,6 +8,8 @@
 #include "daemon/capture/recording_source.h"
 #include "daemon/capture/simulated_source.h"
 #include "interface/calibration_io.h"
+#include "interface/recording.h"
+#include "lighting/radiometer.h"
 
 namespace lightwell {
 namespace {
@@ -73,6 +75,25 @@ Result<Calibration> choose_calibration(const Configuration& configuration) {
     if (*attached) return **attached;
   }
   return no_calibration(source);
+}
+
+Status check_frames_fit(const Configuration& configuration, const Calibration& calibration) {
+  const std::string& source = configuration.source.address;
+  std::optional<FrameFormat> format;
+  if (const auto name = after_kind(source, "simulated")) {
+    const auto simulated = simulated_format(*name, capture_options(configuration));
+    if (!simulated) return simulated.error();
+    format = *simulated;
+  }
+  if (const auto file = after_kind(source, "recording")) {
+    const auto take = RecordingReader::open(*file);
+    if (!take) return take.error();
+    format = (*take)->header().format;
+  }
+  if (!format) return {};
+  const auto radiometer =
+      Radiometer::create(calibration, *format, frame_path_options(configuration).radiometer);
+  return radiometer ? Status() : Status(radiometer.error());
 }
 
 }  // namespace lightwell

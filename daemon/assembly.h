@@ -22,4 +22,8 @@ FramePathOptions frame_path_options(const Configuration& configuration);
 // saying what to do. bad_input as the readers of the files say.
 Result<Calibration> choose_calibration(const Configuration& configuration);
 
+// Whether the frames fit calibration and map, where they are known before they come: of takes and simulations.
+// bad_input, in the words that the status has for it.
+Status check_frames_fit(const Configuration& configuration, const Calibration& calibration);
+
 }  // namespace lightwell

@@ -18,6 +18,7 @@
 #include "daemon/web/listen_address.h"
 #include "daemon/web/server.h"
 #include "interface/calibration_io.h"
+#include "interface/dds_domain.h"
 
 namespace lightwell {
 namespace {
@@ -59,17 +60,20 @@ struct Daemon::Parts {
   Pipeline pipeline;
   std::unique_ptr<Publisher> publisher;
   std::unique_ptr<WebServer> web;
+  std::string logged_mismatch;  // log_changes' own
 };
 
 Status Daemon::check(const Configuration& configuration) {
   for (const Status& status :
-       {check_listen_address(configuration.http.listen), check_record_directory(configuration)})
+       {check_listen_address(configuration.http.listen),
+        check_dds_options({configuration.dds.domain, configuration.dds.network_interface}),
+        check_record_directory(configuration)})
     if (!status) return status;
   const auto source = make_capture_source(configuration.source.address, capture_options(configuration));
   if (!source) return source.error();
   const auto calibration = choose_calibration(configuration);
   if (!calibration) return calibration.error();
-  return {};
+  return check_frames_fit(configuration, *calibration);
 }
 
 Result<std::unique_ptr<Daemon>> Daemon::start(const Configuration& configuration) {
@@ -202,6 +206,16 @@ std::string Daemon::url() const {
 }
 std::uint64_t Daemon::heartbeat() const {
   return parts_->pipeline.heartbeat();
+}
+void Daemon::log_changes() {
+  const std::string now = parts_->pipeline.view().mismatch;
+  const std::string line = calibration_change(parts_->logged_mismatch, now);
+  if (line.empty()) return;
+  if (now.empty())
+    spdlog::info("{}", line);
+  else
+    spdlog::error("{}", line);
+  parts_->logged_mismatch = now;
 }
 bool Daemon::ended() const {
   return parts_->pipeline.view().source->state() == SourceState::ended;

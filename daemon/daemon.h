@@ -17,7 +17,8 @@ namespace lightwell {
 // ends with stop. All methods may be called from any thread.
 class Daemon final : public DaemonControl {
  public:
-  // What --check checks: addresses, calibration, record directory; nothing is opened or started.
+  // What --check checks: addresses, calibration and whether the frames fit it, record
+  // directory; nothing is opened or started.
   static Status check(const Configuration& configuration);
 
   static Result<std::unique_ptr<Daemon>> start(const Configuration& configuration);
@@ -37,6 +38,9 @@ class Daemon final : public DaemonControl {
   [[nodiscard]] std::string url() const;  // of the page, with the real port where 0 was asked for
   // Advances while the frame path's loop turns.
   [[nodiscard]] std::uint64_t heartbeat() const;
+  // Logs that the calibration no longer fits the frames, or fits again: once each. Looked at from one thread, now and
+  // then, so that the frame path never waits for a log.
+  void log_changes();
   // A recording as source that is not looped has come to its end.
   [[nodiscard]] bool ended() const;
 

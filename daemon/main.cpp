@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <malloc.h>
 #include <poll.h>
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <sys/signalfd.h>
@@ -15,11 +16,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <memory>
+#include <string>
 #include <thread>
 
 #include "daemon/clock.h"
 #include "daemon/configuration.h"
 #include "daemon/daemon.h"
+#include "interface/printable.h"
 
 // lightwelld: reads its configuration, runs the daemon, and turns signals into what they ask for.
 namespace {
@@ -51,8 +55,27 @@ void add_options(CLI::App& app, Arguments& a) {
 }
 
 int fail(const Error& error) {
-  std::fprintf(stderr, "lightwelld: %s\n", error.message.c_str());
+  std::fprintf(stderr, "lightwelld: %s\n", printable(error.message).c_str());
   return static_cast<int>(error.kind);
+}
+
+// The log's messages as a terminal may have them.
+class PrintableMessage final : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
+    const std::string text = printable({message.payload.data(), message.payload.size()});
+    out.append(text.data(), text.data() + text.size());
+  }
+  [[nodiscard]] std::unique_ptr<custom_flag_formatter> clone() const override {
+    return std::make_unique<PrintableMessage>();
+  }
+};
+
+void set_up_log() {
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("lightwelld"));
+  auto formatter = std::make_unique<spdlog::pattern_formatter>();
+  formatter->add_flag<PrintableMessage>('*').set_pattern("lightwelld: %l: %*");
+  spdlog::set_formatter(std::move(formatter));
 }
 
 int block_signals() {
@@ -91,6 +114,7 @@ void serve(Daemon& daemon, const Arguments& arguments, int signals) {
       if (info.ssi_signo != SIGHUP) return;
       reload(daemon, arguments);
     }
+    daemon.log_changes();
     const std::uint64_t heartbeat = daemon.heartbeat();
     if (watched && heartbeat != last_heartbeat) sd_notify(0, "WATCHDOG=1");
     last_heartbeat = heartbeat;
@@ -150,8 +174,7 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ErrorKind::usage);
   }
   mallopt(M_ARENA_MAX, 2);  // a dozen threads that allocate little need no heap each
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("lightwelld"));
-  spdlog::set_pattern("lightwelld: %l: %v");
+  set_up_log();
   return run(arguments);
 }
 
@@ -161,7 +184,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "lightwelld: %s\n", error.what());
+    std::fprintf(stderr, "lightwelld: %s\n", printable(error.what()).c_str());
     return static_cast<int>(ErrorKind::failed);
   }
 }

@@ -28,17 +28,7 @@ bool is_ipv4(const std::string& text) {
   return ::inet_pton(AF_INET, text.c_str(), &address) == 1;
 }
 
-Status check(const DdsOptions& options) {
-  if (options.domain < 0 || options.domain > kMaxDdsDomain)
-    return Error{ErrorKind::usage, "DDS domain " + std::to_string(options.domain) + " is not within 0 to " +
-                                       std::to_string(kMaxDdsDomain)};
-  if (!is_ipv4(options.interface) && ::if_nametoindex(options.interface.c_str()) == 0)
-    return Error{ErrorKind::usage, "DDS interface '" + options.interface +
-                                       "' does not exist on this machine (`ip link` lists those that do)"};
-  return {};
-}
-
-// The interface passed check(), and Linux allows neither '"' nor '<' from a sane tool, but names are free:
+// The interface is one of this machine, and Linux allows neither '"' nor '<' from a sane tool, but names are free:
 // escape.
 std::string xml_escaped(const std::string& text) {
   std::string out;
@@ -68,8 +58,18 @@ std::string configuration(const DdsOptions& options) {
 
 }  // namespace
 
+Status check_dds_options(const DdsOptions& options) {
+  if (options.domain < 0 || options.domain > kMaxDdsDomain)
+    return Error{ErrorKind::usage, "DDS domain " + std::to_string(options.domain) + " is not within 0 to " +
+                                       std::to_string(kMaxDdsDomain)};
+  if (!is_ipv4(options.interface) && ::if_nametoindex(options.interface.c_str()) == 0)
+    return Error{ErrorKind::usage, "DDS interface '" + options.interface +
+                                       "' does not exist on this machine (`ip link` lists those that do)"};
+  return {};
+}
+
 Result<std::shared_ptr<DdsDomain>> DdsDomain::open(const DdsOptions& options) {
-  if (const Status checked = check(options); !checked) return checked.error();
+  if (const Status checked = check_dds_options(options); !checked) return checked.error();
   const std::scoped_lock lock(registry().mutex);
   std::weak_ptr<DdsDomain>& slot = registry().open[options.domain];
   if (auto existing = slot.lock()) {

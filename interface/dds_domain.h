@@ -19,6 +19,9 @@ struct DdsOptions {
   std::string interface = "lo";  // network interface, by name or address; "lo" reaches this machine only
 };
 
+// What can be said of the options before anything is opened. usage: domain out of range, no such interface
+Status check_dds_options(const DdsOptions& options);
+
 // A participant on a DDS domain, with multicast discovery on one interface. The configuration is made here
 // and does not depend on the surroundings, except that a user who sets CYCLONEDDS_URI gets that configuration
 // instead. Readers and writers share the object and keep it alive. Opening a domain twice in a process gives

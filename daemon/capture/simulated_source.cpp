@@ -228,6 +228,12 @@ Result<std::unique_ptr<CaptureSource>> make_simulated_source(const std::string& 
       std::make_unique<SimulatedSource>(name, *std::move(setup), buffers, std::move(pool)));
 }
 
+Result<FrameFormat> simulated_format(const std::string& name, const CaptureOptions& options) {
+  const auto setup = set_up(name, options);
+  if (!setup) return setup.error();
+  return setup->model.format;
+}
+
 Result<Calibration> simulated_calibration(const std::string& name, const CaptureOptions& options) {
   const auto setup = set_up(name, options);
   if (!setup) return setup.error();

@@ -19,6 +19,9 @@ namespace lightwell {
 Result<std::unique_ptr<CaptureSource>> make_simulated_source(const std::string& name,
                                                              const CaptureOptions& options);
 
+// Of the frames that make_simulated_source gives for the same arguments.
+Result<FrameFormat> simulated_format(const std::string& name, const CaptureOptions& options);
+
 // The exact calibration of the camera that make_simulated_source gives for the same arguments, so that `simulated:`
 // needs no calibration folder.
 Result<Calibration> simulated_calibration(const std::string& name, const CaptureOptions& options);

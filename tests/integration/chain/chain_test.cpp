@@ -87,6 +87,15 @@ TEST_F(Chain, CameraReplacedByOneOfAnotherSizeIsNamed) {
   EXPECT_TRUE(eventually([&] { return status().value("alarm", "").find("160") != std::string::npos; },
                          std::chrono::seconds(60)))
       << status();
+  const auto log_says = [&](const char* what) {
+    return eventually([&] { return daemon_->stderr_text().find(what) != std::string::npos; },
+                      std::chrono::seconds(60));
+  };
+  EXPECT_TRUE(log_says("error: calibration: does not fit the frames")) << daemon_->stderr_text();
+  camera_->send(SIGTERM);
+  ASSERT_EQ(camera_->wait_for_end(), 0);
+  start_camera({"--scenario", "static", "--size", "320x240", "--rate", "30"});
+  EXPECT_TRUE(log_says("info: calibration: fits the frames again")) << daemon_->stderr_text();
 }
 
 TEST_F(Chain, DaemonStartedBeforeItsCameraFindsIt) {
@@ -202,6 +211,28 @@ TEST_F(DaemonCommandLine, BadInputIsOneLineAndItsExitCode) {
   EXPECT_EQ(run({"--config", config_file().string(), "--source", "simulated:static", "--check"}), 2);
   EXPECT_THAT(text_, HasSubstr("0.0.0.0"));
   EXPECT_THAT(text_, HasSubstr("token"));
+}
+
+TEST_F(DaemonCommandLine, CheckRefusesWhatTheStartRefuses) {
+  std::ofstream(config_file()) << "[dds]\ninterface = \"nosuch0\"\n";
+  const Words options = {"--config",     config_file().string(),  "--source", "simulated:static",
+                         "--record-dir", folder_.path().string(), "--check"};
+  EXPECT_EQ(run(options), 2);
+  EXPECT_THAT(text_, HasSubstr("nosuch0"));
+}
+
+TEST_F(DaemonCommandLine, CheckRefusesFramesThatTheCalibrationDoesNotFit) {
+  start_camera({"--scenario", "static", "--size", "320x240", "--rate", "30"});  // for its calibration
+  Words options = {"--config",         config_file().string(),  "--source",
+                   "simulated:static", "--calibration",         calibration().string(),
+                   "--record-dir",     folder_.path().string(), "--check"};
+  std::ofstream(config_file()) << "[source]\nwidth = 160\nheight = 120\n";
+  EXPECT_EQ(run(options), 3);
+  EXPECT_THAT(text_, HasSubstr("frame width"));
+  EXPECT_THAT(text_, HasSubstr("160"));
+  EXPECT_THAT(text_, HasSubstr("320"));
+  std::ofstream(config_file()) << "[source]\nwidth = 320\nheight = 240\n";
+  EXPECT_EQ(run(options), 0) << text_;
 }
 
 TEST_F(DaemonCommandLine, CheckAcceptsWhatIsGood) {

@@ -50,5 +50,15 @@ TEST(Alarm, ARecordingThatEndedIsNoAlarm) {
   EXPECT_EQ(alarm_for(status), "");
 }
 
+TEST(CalibrationChange, IsSaidWhenItBeginsAndWhenItEndsAndNotBetween) {
+  const std::string wrong = "frame width = 320: allowed 640, the lens's image_size";
+  EXPECT_EQ(calibration_change("", ""), "");
+  EXPECT_THAT(calibration_change("", wrong), HasSubstr(wrong));
+  EXPECT_EQ(calibration_change(wrong, wrong), "");
+  EXPECT_THAT(calibration_change(wrong, "response.bits = 8"),
+              HasSubstr("response.bits = 8"));  // another reason
+  EXPECT_THAT(calibration_change(wrong, ""), HasSubstr("fits the frames again"));
+}
+
 }  // namespace
 }  // namespace lightwell
