@@ -244,8 +244,13 @@ TEST(Recording, WhatIsNoTakeIsBadInputThatNamesTheFile) {
   const TemporaryFolder folder;
   test::write_bytes(folder.path() / "empty", "");
   test::write_bytes(folder.path() / "text", "Matroska, honestly");
+  const auto take = folder.path() / "take.mkv";
   ASSERT_NO_FATAL_FAILURE(
-      test::write_take(folder.path() / "no-frames.mkv", test::take_header(kSmall, RecordingCodec::raw), {}));
+      test::write_take(take, test::take_header(kSmall, RecordingCodec::raw), test::take_frames(kSmall, 1)));
+  const std::string bytes = test::file_bytes(take);
+  const std::size_t cluster = bytes.find("\x1f\x43\xb6\x75");  // the first: all before it is header
+  ASSERT_NE(cluster, std::string::npos);
+  test::write_bytes(folder.path() / "no-frames.mkv", bytes.substr(0, cluster));
   for (const char* file : {"missing", "", "empty", "text", "no-frames.mkv"}) {
     const auto path = folder.path() / file;
     const auto reader = RecordingReader::open(path);
