@@ -5,6 +5,7 @@
 #include <tiny_gltf.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -211,12 +212,36 @@ class Reader {
       const std::string name = "mesh " + std::to_string(node.mesh) + " primitive " + std::to_string(p);
       const tinygltf::Primitive& source = mesh.primitives[p];
       const int mode = source.mode < 0 ? TINYGLTF_MODE_TRIANGLES : source.mode;
-      if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN) continue;
+      if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+        leave_out(name + ": mode " + std::to_string(mode) + " (" + mode_name(mode) + ")");
+        continue;
+      }
       Primitive primitive;
       primitive.casts_shadow = casts;
       primitive.material = primitive_material(node, mesh, source, name);
       add_triangles(source, mode, world_from_node, name, primitive);
       if (primitive.index_count > 0) scene_.primitives.push_back(primitive);
+    }
+  }
+
+  // A mesh that several nodes show is said once.
+  void leave_out(std::string what) {
+    auto& list = scene_.left_out;
+    if (std::find(list.begin(), list.end(), what) == list.end()) list.push_back(std::move(what));
+  }
+
+  static const char* mode_name(int mode) {
+    switch (mode) {
+      case TINYGLTF_MODE_POINTS:
+        return "points";
+      case TINYGLTF_MODE_LINE:
+        return "lines";
+      case TINYGLTF_MODE_LINE_LOOP:
+        return "line loop";
+      case TINYGLTF_MODE_LINE_STRIP:
+        return "line strip";
+      default:
+        return "unknown";
     }
   }
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "interface/environment_io.h"
+#include "interface/printable.h"
 
 namespace lightwell::render {
 namespace {
@@ -110,7 +111,7 @@ Result<std::unique_ptr<LightSource>> environment_lights(const EnvironmentOptions
   auto environment = read_environment(options.file);
   if (!environment) return environment.error();
   if (const std::string remark = environment->remark(options.file); !remark.empty())
-    std::fprintf(stderr, "lightwell-render: %s\n", remark.c_str());
+    std::fprintf(stderr, "lightwell-render: %s\n", printable(remark).c_str());
   return std::unique_ptr<LightSource>(
       std::make_unique<EnvironmentLights>(options, std::move(environment->image)));
 }

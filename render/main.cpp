@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "interface/printable.h"
 #include "render/options.h"
 #include "render/session.h"
 
@@ -22,10 +23,10 @@ int main(int argc, char** argv) {
     if (!parsed.options) return parsed.exit_code;
     const auto status = lightwell::render::run_session(*parsed.options, stop);
     if (status) return 0;
-    std::fprintf(stderr, "lightwell-render: %s\n", status.error().message.c_str());
+    std::fprintf(stderr, "lightwell-render: %s\n", lightwell::printable(status.error().message).c_str());
     return static_cast<int>(status.error().kind);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "lightwell-render: %s\n", error.what());
+    std::fprintf(stderr, "lightwell-render: %s\n", lightwell::printable(error.what()).c_str());
     return static_cast<int>(lightwell::ErrorKind::failed);
   }
 }

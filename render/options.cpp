@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "interface/dds_domain.h"
+#include "interface/printable.h"
 
 namespace lightwell::render {
 namespace {
@@ -36,7 +37,7 @@ Result<std::pair<int, int>> parse_size(const std::string& text) {
 }
 
 int complain(const std::string& message) {
-  std::fprintf(stderr, "lightwell-render: %s\n", message.c_str());
+  std::fprintf(stderr, "lightwell-render: %s\n", printable(message).c_str());
   return static_cast<int>(ErrorKind::usage);
 }
 

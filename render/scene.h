@@ -69,6 +69,8 @@ struct Scene {
   std::vector<TextureImage> textures;
   std::vector<SceneCamera> cameras;
   std::size_t dropped_triangles = 0;  // of no area
+  std::vector<std::string>
+      left_out;  // primitives that are not triangles: "mesh 0 primitive 2: mode 1 (lines)"
 
   [[nodiscard]] std::size_t triangles() const { return indices.size() / 3; }
 };

@@ -11,6 +11,7 @@
 
 #include "interface/atomic_file.h"
 #include "interface/light_set_io.h"
+#include "interface/printable.h"
 #include "render/egl_context.h"
 #include "render/gltf_scene.h"
 #include "render/light_source.h"
@@ -25,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kLiveLights = 72;  // what two cores without a GPU draw several times a second
 
 void say(const std::string& line) {
-  std::fprintf(stderr, "lightwell-render: %s\n", line.c_str());
+  std::fprintf(stderr, "lightwell-render: %s\n", printable(line).c_str());
 }
 
 double cpu_ms() {
@@ -246,6 +247,7 @@ Status run_session(const Options& options, const std::atomic<bool>& stop) {
   if (scene->dropped_triangles > 0)
     say(options.scene.string() + ": " + std::to_string(scene->dropped_triangles) +
         " triangles of no area left out");
+  for (const std::string& what : scene->left_out) say(options.scene.string() + ": " + what + " left out");
   auto camera = choose_camera(*scene, options);
   if (!camera) return camera.error();
   auto source = open_lights(options);

@@ -195,6 +195,23 @@ TEST(GltfScene, TrianglesOfNoAreaAreDroppedAndCounted) {
   EXPECT_EQ(scene->dropped_triangles, 1u);
 }
 
+TEST(GltfScene, PrimitivesThatAreNotTrianglesAreNamed) {
+  Document d = triangle();
+  const json same = d.primitive();
+  auto& primitives = d.root["meshes"][0]["primitives"];
+  for (const int mode : {0, 1, 2, 3}) {
+    primitives.push_back(same);
+    primitives.back()["mode"] = mode;
+  }
+  const auto scene = read(d.text());
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  EXPECT_EQ(scene->primitives.size(), 1u);
+  EXPECT_EQ(scene->left_out,
+            (std::vector<std::string>{
+                "mesh 0 primitive 1: mode 0 (points)", "mesh 0 primitive 2: mode 1 (lines)",
+                "mesh 0 primitive 3: mode 2 (line loop)", "mesh 0 primitive 4: mode 3 (line strip)"}));
+}
+
 TEST(GltfScene, BadFilesAreRefusedInOneLineThatNamesTheReason) {
   expect_refused("", "");
   expect_refused("{", "");
