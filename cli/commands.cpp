@@ -3,11 +3,12 @@
 #include <cstdio>
 
 #include "cli/command.h"
+#include "interface/printable.h"
 
 namespace lightwell::cli {
 
 int fail(const Error& error) {
-  std::fprintf(stderr, "lightwell: %s\n", error.message.c_str());
+  std::fprintf(stderr, "lightwell: %s\n", printable(error.message).c_str());
   return static_cast<int>(error.kind);
 }
 

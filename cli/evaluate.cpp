@@ -12,6 +12,7 @@
 #include "cli/command.h"
 #include "interface/environment_io.h"
 #include "interface/light_set_io.h"
+#include "interface/printable.h"
 #include "lighting/lat_long_image.h"
 
 namespace lightwell::cli {
@@ -32,7 +33,7 @@ int run(const EvaluateOptions& options) {
   const auto set = read_light_set(options.lights);
   if (!set) return fail(set.error());
   if (const std::string remark = environment->remark(options.environment); !remark.empty())
-    std::fprintf(stderr, "lightwell: %s\n", remark.c_str());
+    std::fprintf(stderr, "lightwell: %s\n", printable(remark).c_str());
 
   const auto begin = std::chrono::steady_clock::now();
   const bool hemisphere = set->coverage == Coverage::hemisphere;

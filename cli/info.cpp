@@ -11,6 +11,7 @@
 #include "cli/command.h"
 #include "cli/progress.h"
 #include "interface/calibration_io.h"
+#include "interface/printable.h"
 #include "interface/recording.h"
 
 namespace lightwell::cli {
@@ -146,7 +147,8 @@ Command add_info(CLI::App& app) {
             const auto found = look_through(options->take);
             if (!found) return fail(found.error());
             // A cut take is a good answer to the question; that it is cut belongs to the answer.
-            if (!found->damage.empty()) std::fprintf(stderr, "lightwell: %s\n", found->damage.c_str());
+            if (!found->damage.empty())
+              std::fprintf(stderr, "lightwell: %s\n", printable(found->damage).c_str());
             options->json ? print_json(options->take, *found) : print_text(options->take, *found);
             return 0;
           }};

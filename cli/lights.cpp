@@ -16,6 +16,7 @@
 #include "interface/environment_io.h"
 #include "interface/light_set_io.h"
 #include "interface/numbered_sequence.h"
+#include "interface/printable.h"
 #include "lighting/decompose.h"
 #include "lighting/lat_long_image.h"
 
@@ -91,7 +92,7 @@ Result<PolarMap> read_map(const std::filesystem::path& file, const Plan& plan) {
   const auto environment = read_environment(file);
   if (!environment) return environment.error();
   if (const std::string remark = environment->remark(file); !remark.empty())
-    std::fprintf(stderr, "lightwell: %s\n", remark.c_str());
+    std::fprintf(stderr, "lightwell: %s\n", printable(remark).c_str());
   return polar_map_from_lat_long(environment->image, plan.hemisphere, plan.rotate_y_rad);
 }
 
