@@ -127,19 +127,58 @@ LinearFit fit_knees(const Points& points, const std::vector<double>& knees) {
   });
 }
 
+// Weighted least-squares line through a run of points, one point added after the other (West 1979): no difference of
+// large sums, so nothing is lost over many decades.
+class RunningLine {
+ public:
+  void add(const CurvePoint& p) {
+    const double w = 1 / (p.sigma * p.sigma);
+    weight_ += w;
+    const double dx = p.luminance_cd_m2 - x_, dy = p.code - y_;
+    x_ += dx * w / weight_;
+    y_ += dy * w / weight_;
+    xx_ += w * dx * (p.luminance_cd_m2 - x_);
+    xy_ += w * dx * (p.code - y_);
+    yy_ += w * dy * (p.code - y_);
+  }
+  [[nodiscard]] double chi2() const { return xx_ > 0 ? std::max(0.0, yy_ - xy_ * xy_ / xx_) : yy_; }
+
+ private:
+  double weight_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0, yy_ = 0;
+};
+
 // In which gap between neighbouring points each knee lies: every segment holds two points at least, or its line is not
 // determined.
 using Gaps = std::vector<std::size_t>;
-void add_combinations(std::size_t points, std::size_t knees, Gaps& chosen, std::vector<Gaps>& all) {
-  if (chosen.size() == knees) {
-    all.push_back(chosen);
-    return;
+
+// Where to cut the points so that separate lines leave the least χ²: dynamic programming over the segments' ends
+// (Bellman and Roth 1969), O(segments · n²). points.size() ≥ 2 · segments.
+Gaps best_cuts(const Points& points, std::size_t segments) {
+  const std::size_t n = points.size();
+  // least[s][j]: χ² of the first j points in s + 1 segments; start[s][j]: where the last of these begins.
+  std::vector<std::vector<double>> least(segments, std::vector<double>(n + 1, kNever));
+  std::vector<std::vector<std::size_t>> start(segments, std::vector<std::size_t>(n + 1, 0));
+  for (std::size_t j = 2; j <= n; ++j) {
+    RunningLine line;
+    line.add(points[j - 1]);
+    for (std::size_t i = j - 1; i-- > 0;) {
+      line.add(points[i]);
+      const double chi2 = line.chi2();
+      if (i == 0) least[0][j] = chi2;
+      for (std::size_t s = 1; s < segments; ++s)
+        if (const double sum = least[s - 1][i] + chi2; sum < least[s][j]) {
+          least[s][j] = sum;
+          start[s][j] = i;
+        }
+    }
   }
-  for (std::size_t gap = chosen.empty() ? 1 : chosen.back() + 2; gap + 3 <= points; ++gap) {
-    chosen.push_back(gap);
-    add_combinations(points, knees, chosen, all);
-    chosen.pop_back();
+  Gaps gaps(segments - 1);
+  std::size_t end = n;
+  for (std::size_t s = segments; s-- > 1;) {
+    end = start[s][end];
+    gaps[s - 1] = end - 1;
   }
+  return gaps;
 }
 
 struct KneeFit {
@@ -184,18 +223,35 @@ std::optional<CurveFit> as_model(const Points& points, const KneeFit& best) {
   return CurveFit{std::move(model), best.chi2};
 }
 
+// Separate lines need not meet between their points, nor rise; the cuts move from where they leave the least χ² to
+// where joined and rising lines do: one after the other, a few points at a time, until no move is better.
 std::optional<CurveFit> fit_piecewise(const Points& points, int segments) {
   if (segments == 1) return fit_linear(points);
-  Gaps chosen;
-  std::vector<Gaps> all;
-  add_combinations(points.size(), static_cast<std::size_t>(segments) - 1, chosen, all);
-  std::vector<KneeFit> fits;
-  fits.reserve(all.size());
-  for (const Gaps& gaps : all) fits.push_back(knees_in(points, gaps));
-  std::sort(fits.begin(), fits.end(), [](const KneeFit& a, const KneeFit& b) { return a.chi2 < b.chi2; });
-  for (const KneeFit& fit : fits)
-    if (auto model = as_model(points, fit)) return model;
-  return std::nullopt;
+  if (points.size() < 2 * static_cast<std::size_t>(segments)) return std::nullopt;
+  constexpr std::size_t kFarthest = 6;
+  constexpr int kMostRounds = 20;
+  Gaps gaps = best_cuts(points, static_cast<std::size_t>(segments));
+  std::optional<CurveFit> best = as_model(points, knees_in(points, gaps));
+  bool better = true;
+  for (int round = 0; better && round < kMostRounds; ++round) {
+    better = false;
+    for (std::size_t k = 0; k < gaps.size(); ++k) {
+      const std::size_t first = k == 0 ? 1 : gaps[k - 1] + 2;
+      const std::size_t last = k + 1 == gaps.size() ? points.size() - 3 : gaps[k + 1] - 2;
+      const std::size_t now = gaps[k];
+      Gaps trial = gaps;
+      for (trial[k] = std::max(first, now - std::min(now, kFarthest));
+           trial[k] <= std::min(last, now + kFarthest); ++trial[k]) {
+        if (trial[k] == now) continue;
+        auto fit = as_model(points, knees_in(points, trial));
+        if (!fit || (best && !(fit->chi2 < best->chi2))) continue;
+        best = std::move(fit);
+        gaps = trial;
+        better = true;
+      }
+    }
+  }
+  return best;
 }
 
 }  // namespace

@@ -54,14 +54,15 @@ Status check_clipping(const PatchSet& set, double clip_code) {
   return {};
 }
 
-Status check_order(const PatchSet& set) {
+Status check_order(const PatchSet& set, double code_sigma) {
+  const auto sigma = [=](const Patch& p) { return p.code_sigma > 0 ? p.code_sigma : code_sigma; };
   for (std::size_t i = 1; i < set.fit.size(); ++i) {
     const Patch &before = set.fit[i - 1], &patch = set.fit[i];
     if (patch.luminance_cd_m2 == before.luminance_cd_m2)
       return bad_patch(set, patch,
                        "luminance_cd_m2 = " + shown(patch.luminance_cd_m2) + " stands in " + before.name +
                            " too: allowed once, with the mean of its codes");
-    const double noise = kNoiseSigmas * std::hypot(patch.code_sigma, before.code_sigma);
+    const double noise = kNoiseSigmas * std::hypot(sigma(patch), sigma(before));
     if (patch.code < before.code - noise)
       return bad_patch(set, patch,
                        "code = " + shown(patch.code) + " at " + shown(patch.luminance_cd_m2) +
@@ -113,7 +114,7 @@ std::vector<std::string> channels_of(const PatchSet& set) {
   return channels;
 }
 
-Result<PatchSet> ordered_and_checked(PatchSet set, double clip_code) {
+Result<PatchSet> ordered_and_checked(PatchSet set, double clip_code, double code_sigma) {
   const auto darker = [](const Patch& a, const Patch& b) { return a.luminance_cd_m2 < b.luminance_cd_m2; };
   std::stable_sort(set.fit.begin(), set.fit.end(), darker);
   std::stable_sort(set.check.begin(), set.check.end(), darker);
@@ -122,8 +123,12 @@ Result<PatchSet> ordered_and_checked(PatchSet set, double clip_code) {
                                            ": number of patches to fit = " + std::to_string(set.fit.size()) +
                                            ": allowed at least " + std::to_string(kFewestPatches) +
                                            "; six over the whole range are good"};
+  if (set.fit.size() > kMostPatches)
+    return Error{ErrorKind::bad_input,
+                 set.file + ": number of patches to fit = " + std::to_string(set.fit.size()) +
+                     ": allowed at most " + std::to_string(kMostPatches) + "; take the mean of neighbours"};
   if (const Status status = check_clipping(set, clip_code); !status) return status.error();
-  if (const Status status = check_order(set); !status) return status.error();
+  if (const Status status = check_order(set, code_sigma); !status) return status.error();
   return set;
 }
 

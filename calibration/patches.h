@@ -33,8 +33,11 @@ PatchSet of_channel(const PatchSet& set, const std::string& channel);
 // In order of appearance.
 std::vector<std::string> channels_of(const PatchSet& set);
 
-// Sorted by luminance, and fit to be fitted: enough of them, no luminance twice, none clipped (code ≤ 0 or ≥ clip_code),
-// codes that rise with luminance by more than noise takes away. bad_input names the patch.
-Result<PatchSet> ordered_and_checked(PatchSet set, double clip_code);
+inline constexpr std::size_t kMostPatches = 4000;  // the time of a fit grows with their square
+
+// Sorted by luminance, and fit to be fitted: 4 to kMostPatches of them, no luminance twice, none clipped (code ≤ 0 or
+// ≥ clip_code), codes that rise with luminance, or fall by no more than noise does: code_sigma where a patch says none.
+// bad_input names the patch.
+Result<PatchSet> ordered_and_checked(PatchSet set, double clip_code, double code_sigma);
 
 }  // namespace lightwell::calibration

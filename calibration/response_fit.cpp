@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,6 +19,7 @@ constexpr double kPrior = 4;          // residuals that the stated noise counts 
 constexpr double kRejectedChi2 = 25;  // what a patch that is left out costs a curve: five standard deviations
 constexpr double kStrong =
     10;  // difference of AICc that leaves the other no support (Burnham and Anderson 2002)
+constexpr std::size_t kSuspects = 4;  // patches tried without; the first order misses where the curve bends
 constexpr double kFalseRejection = 0.01;  // chance to reject any patch of a good set
 
 using Points = std::vector<CurvePoint>;
@@ -95,13 +97,38 @@ class Fitter {
         const double h = std::max(1e-4 * p.luminance_cd_m2, 1e-12);
         const double slope =
             (model_code(fit->model, p.luminance_cd_m2 + h) - model_code(fit->model, p.luminance_cd_m2)) / h;
-        const auto patch = std::find_if(patches_.begin(), patches_.end(), [&](const Patch& c) {
-          return c.luminance_cd_m2 == p.luminance_cd_m2;
-        });
+        const auto patch =
+            std::lower_bound(patches_.begin(), patches_.end(), p.luminance_cd_m2,
+                             [](const Patch& c, double luminance) { return c.luminance_cd_m2 < luminance; });
         p.sigma = sigma(*patch, slope);
       }
     }
     return Weighted{*std::move(fit), std::move(points)};
+  }
+
+  // The patches whose loss would take the most χ² away, to first order: residual² / (1 − leverage).
+  [[nodiscard]] std::vector<std::size_t> most_influential(const Weighted& all) const {
+    const auto n = static_cast<Eigen::Index>(all.points.size());
+    Eigen::MatrixXd jacobian(n, static_cast<Eigen::Index>(parameters_of(all.fit.model).size()));
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const CurvePoint& p = all.points[static_cast<std::size_t>(i)];
+      jacobian.row(i) = dcode_dparameters(all.fit.model, p.luminance_cd_m2).transpose() / p.sigma;
+    }
+    for (auto column : jacobian.colwise())
+      if (const double length = column.norm(); length > 0) column /= length;
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(jacobian);
+    const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(n, qr.rank());
+    std::vector<std::pair<double, std::size_t>> loss;
+    for (std::size_t i = 0; i < all.points.size(); ++i) {
+      const CurvePoint& p = all.points[i];
+      const double r = (p.code - model_code(all.fit.model, p.luminance_cd_m2)) / p.sigma;
+      const double free = 1 - q.row(static_cast<Eigen::Index>(i)).squaredNorm();
+      loss.emplace_back(-r * r / std::max(free, 1e-9), i);
+    }
+    std::sort(loss.begin(), loss.end());
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < std::min(loss.size(), kSuspects); ++i) out.push_back(loss[i].second);
+    return out;
   }
 
   // The fit without the one patch that contradicts the others, where there is one.
@@ -115,7 +142,7 @@ class Fitter {
     // Leaving out takes at most all of χ² away.
     if (all.fit.chi2 * degrees / kPrior < least_t * least_t) return std::nullopt;
     std::optional<std::pair<Weighted, std::size_t>> best;
-    for (std::size_t i = 0; i < patches_.size(); ++i) {
+    for (const std::size_t i : most_influential(all)) {
       Points points = start_;
       points.erase(points.begin() + static_cast<std::ptrdiff_t>(i));
       auto fit = weighted(curve, segments, std::move(points));
@@ -269,7 +296,7 @@ Result<ResponseFit> fit_response(const PatchSet& given, const ResponseFitOptions
   fit.response.bits = options.bits > 0 ? options.bits : fewest_bits(given);
   fit.response.clip_code = options.clip_code > 0 ? options.clip_code : std::ldexp(1.0, fit.response.bits) - 1;
   fit.response.reference_exposure_us = options.reference_exposure_us;
-  const auto patches = ordered_and_checked(given, fit.response.clip_code);
+  const auto patches = ordered_and_checked(given, fit.response.clip_code, options.code_sigma);
   if (!patches) return patches.error();
   const auto in_file = [&](const Error& e) { return Error{e.kind, given.file + ": " + e.message}; };
 

@@ -124,7 +124,8 @@ Result<ResponseReport> calibrate_response(const PatchSet& patches, const std::st
   report.fit = *std::move(fit);
   for (const std::string& other : channels) {
     if (other == report.channel) continue;
-    const auto checked = ordered_and_checked(of_channel(patches, other), report.fit.response.clip_code);
+    const auto checked =
+        ordered_and_checked(of_channel(patches, other), report.fit.response.clip_code, options.code_sigma);
     if (!checked) return checked.error();
     report.channels.push_back(gain_of(report.fit, *checked, other));
   }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
 #include <cmath>
 #include <random>
 #include <string>
@@ -210,6 +211,94 @@ TEST(ResponseFit, WhatCannotBeFittedIsRefusedByName) {
   pwl.curve = Curve::pwl;
   set.fit.resize(4);
   expect_refused(set, "model pwl: 4 parameters need 5 patches, there are 4", pwl);
+}
+
+std::vector<CurvePoint> noisy_points(const Model& model, int n, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<CurvePoint> points;
+  for (int i = 0; i < n; ++i) {
+    const double l = 0.5 * std::pow(40000.0, i / (n - 1.0));
+    points.push_back({l, model_code(model, l) + 2 * normal(random), 2});
+  }
+  return points;
+}
+
+double chi2_of(const Model& model, const std::vector<CurvePoint>& points) {
+  double sum = 0;
+  for (const CurvePoint& p : points)
+    sum += std::pow((p.code - model_code(model, p.luminance_cd_m2)) / p.sigma, 2);
+  return sum;
+}
+
+TEST(FitCurve, KneesFitAtLeastAsWellAsTheTruthThatMadeThePoints) {  // a least-squares fit has to
+  const Model truth = PiecewiseLinearResponse{{{0, 60}, {12, 1084}, {95, 2108}, {1500, 3132}, {24000, 4000}}};
+  for (const int n : {12, 24, 100, 400})
+    for (unsigned seed = 1; seed <= 10; ++seed) {
+      const auto points = noisy_points(truth, n, seed);
+      const auto fit = fit_curve(Curve::pwl, points, 4);
+      ASSERT_TRUE(fit) << n << " " << seed;
+      EXPECT_NEAR(fit->chi2, chi2_of(fit->model, points), 1e-6 * (1 + fit->chi2));
+      EXPECT_LE(fit->chi2, chi2_of(truth, points)) << n << " " << seed;
+    }
+}
+
+TEST(FitCurve, OneKneeIsTheBestThatASearchOverAllItsPlacesFinds) {
+  const Model log = kLog;  // no knee in it, so the lines need not meet where they are cut
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    auto points = noisy_points(log, 30, seed);
+    for (CurvePoint& p : points) p.sigma = 100;
+    const auto fit = fit_curve(Curve::pwl, points, 2);
+    ASSERT_TRUE(fit);
+    double least = 1e300;  // knee on a fine grid; codes at 0, knee, end are linear parameters
+    for (double knee = points[1].luminance_cd_m2; knee < points[28].luminance_cd_m2; knee *= 1.01) {
+      Eigen::MatrixXd m(30, 3);
+      Eigen::VectorXd y(30);
+      for (Eigen::Index i = 0; i < 30; ++i) {
+        const CurvePoint& p = points[static_cast<std::size_t>(i)];
+        m.row(i) << 1, std::min(p.luminance_cd_m2, knee) / knee,
+            std::max(p.luminance_cd_m2 - knee, 0.0) / 20000;
+        y[i] = p.code;
+      }
+      const Eigen::VectorXd beta = m.colPivHouseholderQr().solve(y);
+      least = std::min(least, (m * beta - y).squaredNorm() / 1e4);
+    }
+    // Where the lines of the best cut do not meet inside, the knee stands at its end, next to the best one.
+    EXPECT_LE(fit->chi2, 1.05 * least) << seed;
+  }
+}
+
+TEST(ResponseFit, HundredsOfPatchesAreFittedAndTheBadOneIsFound) {
+  std::vector<double> luminances;
+  for (int i = 0; i < 300; ++i) luminances.push_back(0.1 * std::pow(1e6, i / 299.0));
+  for (const std::size_t bad : {0UL, 40UL, 150UL, 299UL}) {
+    PatchSet set = patches_of(kLog, luminances, 0.001, 0.3, 5);
+    set.fit[bad].code += bad == 0 ? -8 : 8;  // less than from one patch to the next: still in order
+    const auto fit = fit_response(set, {});
+    ASSERT_TRUE(fit) << fit.error().message;
+    EXPECT_EQ(fit->curve, Curve::log);
+    for (std::size_t i = 0; i < 300; ++i) EXPECT_EQ(fit->fit[i].rejected, i == bad) << bad << " " << i;
+  }
+}
+
+TEST(ResponseFit, MorePatchesThanAllowedAreRefusedWithTheNumber) {
+  PatchSet set;
+  set.file = "patches.csv";
+  for (std::size_t i = 0; i <= kMostPatches; ++i)
+    set.fit.push_back({"p", 1 + static_cast<double>(i), 10 + 0.5 * static_cast<double>(i), 0.5, ""});
+  expect_refused(set, "number of patches to fit = 4001: allowed at most 4000");
+}
+
+TEST(ResponseFit, CodesWithoutASigmaMayFallByTheNoiseAssumedOfThem) {
+  PatchSet set = patches_of(kLog, {0.1, 1.6, 25, 400, 400.5, 6300, 1e5});
+  for (Patch& p : set.fit) p.code_sigma = 0;
+  set.fit[4].code = set.fit[3].code - 2;  // 3 · √2 · 0.5 = 2.12 allowed
+  EXPECT_TRUE(fit_response(set, {}));
+  set.fit[4].code = set.fit[3].code - 2.2;
+  expect_refused(set, "not monotone");
+  ResponseFitOptions options;
+  options.code_sigma = 0.6;  // 2.55
+  EXPECT_TRUE(fit_response(set, options));
 }
 
 TEST(ResponseFit, BitsAreTheFewestThatHoldTheCodesUnlessGiven) {
