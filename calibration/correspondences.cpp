@@ -3,6 +3,7 @@
 #include "calibration/correspondences.h"
 
 #include <cmath>
+#include <cstdio>
 #include <set>
 #include <tuple>
 
@@ -13,6 +14,15 @@ namespace lightwell {
 namespace {
 
 using nlohmann::json;
+
+constexpr double kFarthestMm = 1e9;  // a thousand kilometres; squares of squares stay finite
+
+// "= value: allowed from to to"
+std::string outside(double value, double from, double to, const char* unit) {
+  char text[160];
+  std::snprintf(text, sizeof text, "= %g: allowed %g to %g %s", value, from, to, unit);
+  return text;
+}
 
 const json& array_in(const JsonFields& fields, const json& object, const char* key) {
   if (!object.contains(key)) fields.fail(key, "is missing");
@@ -32,11 +42,13 @@ Correspondence point_from(const JsonFields& view, const json& point, const std::
       view.fail(key + "[" + std::to_string(i) + "]", "= " + point[i].dump() + ": allowed a finite number");
     v[i] = point[i].get<double>();
   }
+  for (std::size_t i = 0; i < 3; ++i)
+    if (std::abs(v[i]) > kFarthestMm)
+      view.fail(key + "[" + std::to_string(i) + "]", outside(v[i], -kFarthestMm, kFarthestMm, "mm"));
   for (std::size_t i = 0; i < 2; ++i)
     if (v[3 + i] < -image_size[i] || v[3 + i] > 2 * image_size[i])
-      view.fail(key + "[" + std::to_string(3 + i) + "]",
-                "= " + std::to_string(v[3 + i]) + ": allowed at most one image outside the image, " +
-                    std::to_string(-image_size[i]) + " to " + std::to_string(2 * image_size[i]));
+      view.fail(key + "[" + std::to_string(3 + i) + "]", outside(v[3 + i], -image_size[i], 2 * image_size[i],
+                                                                 "px, one image outside the image at most"));
   return {{v[0], v[1], v[2]}, {v[3], v[4]}};
 }
 
@@ -63,8 +75,7 @@ TargetViews views_from(const json& root, const std::string& file) {
   fields.numbers("image_size", size);
   for (std::size_t i = 0; i < 2; ++i) {
     if (size[i] != std::floor(size[i]) || size[i] < 1 || size[i] > 16384)
-      fields.fail("image_size[" + std::to_string(i) + "]",
-                  "= " + std::to_string(size[i]) + ": allowed a whole number from 1 to 16384");
+      fields.fail("image_size[" + std::to_string(i) + "]", outside(size[i], 1, 16384, "px, a whole number"));
     out.image_size[i] = static_cast<int>(size[i]);
   }
   const json& views = array_in(fields, root, "views");
@@ -100,7 +111,9 @@ std::string to_json(const TargetViews& target_views) {
       points.push_back({p.target_mm.x(), p.target_mm.y(), p.target_mm.z(), p.pixel.x(), p.pixel.y()});
     views.push_back({{"name", view.name}, {"points", std::move(points)}});
   }
-  return json{{"image_size", target_views.image_size}, {"views", std::move(views)}}.dump() + "\n";
+  return json{{"image_size", target_views.image_size}, {"views", std::move(views)}}.dump(
+             -1, ' ', false, json::error_handler_t::replace) +
+         "\n";
 }
 
 }  // namespace lightwell

@@ -3,6 +3,7 @@
 #include "calibration/lens_adjustment.h"
 
 #include <ceres/ceres.h>
+#include <glog/logging.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -35,12 +36,6 @@ Eigen::Matrix<double, 8, 8> dlens_dnumbers(const Lens& lens) {
   j(1, 0) = lens.focal.y() / lens.focal.x();
   j(1, 1) = lens.focal.x();
   return j;
-}
-
-Eigen::Matrix3d cross_matrix(const Vec3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
 }
 
 // d(R(ω) p) = −[R p]× · left_jacobian(ω) · dω (Barfoot, State Estimation for Robotics, equation 7.77).
@@ -112,10 +107,19 @@ class ViewCost : public ceres::CostFunction {
         Eigen::Map<Eigen::Matrix<double, 2, 5, Eigen::RowMajor>>{jacobians[2] + 10 * i} =
             weighted * j.dpixel_ddirection * rotation * basis;
     }
+    // False makes the solver try a shorter step; numbers that are not finite would end it.
+    if (!finite(residuals, 1)) return false;
+    constexpr int kSizes[] = {8, 6, 5};
+    for (int b = 0; jacobians && b < 3; ++b)
+      if (jacobians[b] && !finite(jacobians[b], kSizes[b])) return false;
     return true;
   }
 
  private:
+  [[nodiscard]] bool finite(const double* rows, int columns) const {
+    return Eigen::Map<const Eigen::VectorXd>(rows, num_residuals() * columns).allFinite();
+  }
+
   const Lens& lens_;  // what is not solved for
   const TargetShape& shape_;
   const std::vector<Correspondence>& points_;
@@ -164,6 +168,18 @@ double squared_error(const Lens& lens, const TargetShape& shape, const std::vect
   }
   return sum;
 }
+
+// Ceres logs a step that cannot be computed whatever its logging type is; that it failed is in its summary.
+class QuietLog {
+ public:
+  QuietLog() { FLAGS_minloglevel = google::GLOG_FATAL; }
+  ~QuietLog() { FLAGS_minloglevel = before_; }
+  QuietLog(const QuietLog&) = delete;
+  QuietLog& operator=(const QuietLog&) = delete;
+
+ private:
+  int before_ = FLAGS_minloglevel;
+};
 
 }  // namespace
 
@@ -214,6 +230,7 @@ double adjust(Lens& lens, std::vector<PosedView>& views, const AdjustmentOptions
   solver.function_tolerance = options.tolerance;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
+  const QuietLog quiet;
   ceres::Solve(solver, &problem, &summary);
   if (!summary.IsSolutionUsable()) return std::numeric_limits<double>::quiet_NaN();
   set_numbers(lens, numbers.data());

@@ -93,13 +93,15 @@ struct Solution {
   double noise_px = kSquares;
 };
 
-// From each start a short robust adjustment; the one that leaves the least goes on.
+// From each start a short robust adjustment; the one that leaves the least goes on. Where none leaves anything finite:
+// the one that placed most boards.
 Solution best_start(const TargetViews& target_views, const std::vector<Judged>& judged) {
   constexpr std::size_t kStarts = 4;
-  Solution best;
+  Solution best, failed;
   for (const Lens& start : lens_starts(target_views, kStarts)) {
     Solution s{start, judged, kSquares};
     find_poses(s.lens, s.judged);
+    if (failed.judged.empty() || used_count(s.judged) > used_count(failed.judged)) failed = s;
     if (used_count(s.judged) < kFewestViews) continue;
     robust_adjust(s.lens, s.judged, {1, false, true}, 8);
     s.noise_px = robust_adjust(s.lens, s.judged, {2, false, true}, 12);
@@ -107,7 +109,7 @@ Solution best_start(const TargetViews& target_views, const std::vector<Judged>& 
     constexpr double kNeedsNoRival = 0.5;  // pixels: a detector's own noise
     if (best.noise_px < kNeedsNoRival) break;
   }
-  return best;
+  return std::isfinite(best.noise_px) ? best : failed;
 }
 
 // Which points and views the lens explains. Views that were out are looked at anew. True where nothing changed.
@@ -178,10 +180,12 @@ Status separable(const Lens& lens, const std::vector<Judged>& judged) {
 }
 
 std::string names_of(const std::vector<Judged>& judged, bool used) {
+  constexpr std::size_t kMost = 5;
   std::string out;
+  std::size_t count = 0;
   for (const Judged& j : judged)
-    if (j.used == used) out += (out.empty() ? "" : ", ") + j.view->name;
-  return out;
+    if (j.used == used && ++count <= kMost) out += (out.empty() ? "" : ", ") + j.view->name;
+  return count <= kMost ? out : out + " and " + std::to_string(count - kMost) + " more";
 }
 
 Error too_few(std::size_t seen, const std::string& detail) {
@@ -189,13 +193,27 @@ Error too_few(std::size_t seen, const std::string& detail) {
                                     " views, allowed at least " + std::to_string(kFewestViews) + detail};
 }
 
+// Why no start led to a lens.
+Error no_start(const Solution& s) {
+  const std::size_t placed = used_count(s.judged);
+  if (placed < kFewestViews)
+    return too_few(placed, ": the points of " + names_of(s.judged, false) +
+                               " do not determine where the board is, they lie on a line or at one place");
+  return {ErrorKind::bad_input, "no lens can be fitted to the points of " + names_of(s.judged, true) +
+                                    ": is the board's size right, are the points in its order?"};
+}
+
 // Final values on the points that count, with the freedom the data support.
 Result<LensCalibration> concluded(Solution& s, const std::optional<TargetShape>& shape) {
   std::vector<PosedView> views = posed(s.judged, true);
   LensCalibration out;
   out.lens = s.lens;
-  adjust(out.lens, views, {{}, kSquares, 50});
+  const Error undetermined{
+      ErrorKind::bad_input,
+      "the views do not determine a lens: move the board over the whole image and tilt it"};
+  if (!(adjust(out.lens, views, {{}, kSquares, 50}) >= 0)) return undetermined;
   LensSelection selection = select_freedom(out.lens, views);
+  const int selected = selection.freedom.coefficients;
   std::optional<Eigen::Matrix<double, 8, 8>> covariance;
   for (;; --selection.freedom.coefficients) {
     const double squared = adjust(out.lens, views, {selection.freedom, kSquares, 100});
@@ -208,12 +226,11 @@ Result<LensCalibration> concluded(Solution& s, const std::optional<TargetShape>&
     out.noise_px = std::sqrt(squared / std::max(1.0, 2 * static_cast<double>(points) - unknowns));
     covariance = lens_covariance(out.lens, views, selection.freedom, out.noise_px, shape ? &*shape : nullptr);
     if (squared >= 0 && covariance && check(out.lens)) break;
-    if (selection.freedom.coefficients == 0)
-      return Error{ErrorKind::bad_input,
-                   "the views do not determine a lens: move the board over the whole image and tilt it"};
+    if (selection.freedom.coefficients == 0) return undetermined;
   }
   out.freedom = selection.freedom;
-  out.held_out_rms_px = selection.held_out_rms_px;
+  out.held_out_rms_px = out.freedom.coefficients == selected ? selection.held_out_rms_px
+                                                             : held_out_rms_px(out.lens, views, out.freedom);
   out.covariance = *covariance;
   take_poses(s.judged, views);
   constexpr double kLargestFocalError = 0.05;
@@ -272,7 +289,7 @@ Result<LensCalibration> calibrate_lens(const TargetViews& target_views, TargetTr
     return too_few(judged.size(), judged.empty() ? "" : " (" + names_of(judged, true) + ")");
 
   Solution s = best_start(usable, judged);
-  if (!std::isfinite(s.noise_px)) return too_few(0, ": the others do not determine where the board is");
+  if (!std::isfinite(s.noise_px)) return no_start(s);
   settle(s, 10);
   // A hundredth of the image is not a detector's error: the numbers are not of one board and one lens.
   const double limit = 0.01 * std::max(target_views.image_size[0], target_views.image_size[1]);

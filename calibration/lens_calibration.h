@@ -30,10 +30,12 @@ struct LensCalibration {
   LensFreedom freedom;
   Eigen::Matrix<double, 8, 8> covariance;  // fx, fy, cx, cy, k1 … k4; zero rows for what is held
   double rms_px = 0;                       // √mean(du² + dv²) over the points that count
-  double held_out_rms_px = 0;              // the same for views that the lens was not fitted to
-  double noise_px = 0;                     // standard deviation of a coordinate, degrees of freedom counted
-  std::vector<ViewResult> views;           // in the order given
-  std::optional<TargetShape> shape;        // of the board, where it was asked for and the views support it
+  // The same for views held out, a lens of this freedom fitted to the others; infinite where too few are left to fit
+  // one to.
+  double held_out_rms_px = 0;
+  double noise_px = 0;               // standard deviation of a coordinate, degrees of freedom counted
+  std::vector<ViewResult> views;     // in the order given
+  std::optional<TargetShape> shape;  // of the board, where it was asked for and the views support it
 };
 
 // Kannala–Brandt lens from views of a target, without an initial guess.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "calibration/field_coverage.h"
 #include "calibration/lens_uncertainty.h"
 #include "interface/lens_json.h"
 
@@ -92,9 +93,9 @@ ordered_json lens_report(const LensCalibration& calibration, const TargetViews& 
     out["board_shape_mm"] = {{"stretch", c[0]}, {"shear", c[1]}, {"bow_x", c[2]},
                              {"bow_y", c[3]},   {"twist", c[4]}, {"half_width", calibration.shape->half_mm}};
   }
-  const Coverage coverage = coverage_of(calibration, target_views);
+  const FieldCoverage coverage = field_coverage(calibration, target_views);
   out["coverage"] = {{"ring_deg", coverage.ring_deg},
-                     {"sector_deg", 360.0 / static_cast<double>(Coverage::kSectors)},
+                     {"sector_deg", 360.0 / static_cast<double>(FieldCoverage::kSectors)},
                      {"points", coverage.points}};
   ordered_json views = ordered_json::array();
   for (std::size_t i = 0; i < calibration.views.size(); ++i)
@@ -104,8 +105,8 @@ ordered_json lens_report(const LensCalibration& calibration, const TargetViews& 
 }
 
 std::string coverage_gaps(const LensCalibration& calibration, const TargetViews& target_views) {
-  const Coverage coverage = coverage_of(calibration, target_views);
-  const auto sector_deg = static_cast<int>(360 / Coverage::kSectors);
+  const FieldCoverage coverage = field_coverage(calibration, target_views);
+  const auto sector_deg = static_cast<int>(360 / FieldCoverage::kSectors);
   std::string out;
   for (std::size_t ring = 0; ring < coverage.points.size(); ++ring) {
     std::string sectors;

@@ -36,7 +36,20 @@ bool aspect_is_free(const Lens& lens, const std::vector<PosedView>& views) {
   return aic[1] < aic[0];
 }
 
-double held_out(const Lens& lens, const std::vector<PosedView>& views, const LensFreedom& freedom) {
+}  // namespace
+
+bool shape_is_supported(const Lens& lens, const std::vector<PosedView>& views, TargetShape& shape) {
+  double aic[2];
+  for (const bool shaped : {false, true}) {
+    Lens l = lens;
+    std::vector<PosedView> v = views;
+    const double error = adjust(l, v, {{}, kNone, 30}, shaped ? &shape : nullptr);
+    aic[shaped] = corrected_aic(error, count_points(views), views.size(), shaped ? 13 : 8);
+  }
+  return aic[1] < aic[0];
+}
+
+double held_out_rms_px(const Lens& lens, const std::vector<PosedView>& views, const LensFreedom& freedom) {
   const std::size_t parts = std::min<std::size_t>(5, views.size());
   double sum = 0;
   for (std::size_t part = 0; part < parts; ++part) {
@@ -52,31 +65,18 @@ double held_out(const Lens& lens, const std::vector<PosedView>& views, const Len
   return std::sqrt(sum / static_cast<double>(count_points(views)));
 }
 
-}  // namespace
-
-bool shape_is_supported(const Lens& lens, const std::vector<PosedView>& views, TargetShape& shape) {
-  double aic[2];
-  for (const bool shaped : {false, true}) {
-    Lens l = lens;
-    std::vector<PosedView> v = views;
-    const double error = adjust(l, v, {{}, kNone, 30}, shaped ? &shape : nullptr);
-    aic[shaped] = corrected_aic(error, count_points(views), views.size(), shaped ? 13 : 8);
-  }
-  return aic[1] < aic[0];
-}
-
 LensSelection select_freedom(const Lens& lens, const std::vector<PosedView>& views) {
   LensFreedom freedom;
   freedom.aspect = aspect_is_free(lens, views);
   constexpr double kAsGood = 1.01;
   freedom.coefficients = 4;
-  double error = held_out(lens, views, freedom);
+  double error = held_out_rms_px(lens, views, freedom);
   // Down as long as fewer are clearly better; an infinite error, of views that do not determine the lens, is no
   // better than any.
   while (freedom.coefficients > 1) {
     LensFreedom fewer = freedom;
     --fewer.coefficients;
-    const double without = held_out(lens, views, fewer);
+    const double without = held_out_rms_px(lens, views, fewer);
     if (!(error > kAsGood * without)) break;
     freedom = fewer;
     error = without;

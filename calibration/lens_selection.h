@@ -25,4 +25,8 @@ bool shape_is_supported(const Lens& lens, const std::vector<PosedView>& views, T
 // lens, views: solved with everything free.
 LensSelection select_freedom(const Lens& lens, const std::vector<PosedView>& views);
 
+// √mean(du² + dv²) in pixels over views that the lens was not fitted to, their poses alone: in at most five parts by
+// views, each part held out once. Infinite where the views that remain determine no lens.
+double held_out_rms_px(const Lens& lens, const std::vector<PosedView>& views, const LensFreedom& freedom);
+
 }  // namespace lightwell

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "calibration/lens_calibration.h"
 #include "lighting/lens.h"
@@ -32,17 +31,5 @@ class ProjectionUncertainty {
   Eigen::Matrix<double, 8, 8> covariance_;
   Eigen::Matrix<double, 3, 8> turn_dlens_;
 };
-
-// Points that count, by zenith angle and azimuth: [ring][sector].
-struct Coverage {
-  double ring_deg = 10;
-  std::vector<std::vector<std::size_t>> points;
-
-  static constexpr std::size_t kSectors = 12;
-};
-Coverage coverage_of(const LensCalibration& calibration, const TargetViews& target_views);
-
-// Azimuth of a direction in the camera's frame, in [0, 2π): 0 at the top of the image, growing to its right.
-double azimuth_rad(const Vec3d& camera_direction);
 
 }  // namespace lightwell

@@ -109,13 +109,13 @@ std::optional<TargetPose> solid_pose(const TargetAxes& axes, const std::vector<V
   return pose_in_axes(axes, nearest_rotation(m / scale), p->col(3) / scale);
 }
 
+}  // namespace
+
 Eigen::Matrix3d cross_matrix(const Vec3d& v) {
   Eigen::Matrix3d m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
   return m;
 }
-
-}  // namespace
 
 Eigen::Matrix3d TargetPose::camera_from_target() const {
   const double angle = rotation.norm();

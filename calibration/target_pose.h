@@ -21,6 +21,9 @@ struct TargetPose {
 };
 TargetPose target_pose(const Eigen::Matrix3d& camera_from_target, const Vec3d& translation_mm);
 
+// [v]×: cross_matrix(v) · p = v × p
+Eigen::Matrix3d cross_matrix(const Vec3d& v);
+
 // Pixel error of every point: |projection − pixel|.
 std::vector<double> errors_px(const Lens& lens, const TargetPose& pose,
                               std::span<const Correspondence> points);

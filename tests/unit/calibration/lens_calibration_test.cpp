@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibration/lens_selection.h"
 #include "calibration/lens_start.h"
 #include "tests/support/board_views.h"
 
@@ -177,6 +178,59 @@ TEST(LensCalibration, UnequalAxesAreFoundAndEqualOnesHeld) {
   ASSERT_TRUE(stretched.ok());
   EXPECT_TRUE(stretched->freedom.aspect);
   EXPECT_NEAR(stretched->lens.focal.y() / stretched->lens.focal.x(), 1.003, 0.0005);
+  lens.focal.y() = lens.focal.x();
+  const auto square = calibrate_lens(test::board_views(lens, setup_of(lens)).target_views);
+  ASSERT_TRUE(square.ok());
+  EXPECT_FALSE(square->freedom.aspect);
+  EXPECT_EQ(square->lens.focal.y(), square->lens.focal.x());
+  EXPECT_EQ(square->covariance(1, 1), square->covariance(0, 0));
+}
+
+TEST(LensCalibration, TheHeldOutErrorIsOfTheLensThatIsReturned) {
+  std::vector<NamedLens> lenses = {wide_lenses()[2], {"30", lens_of(30, 900, {0.05, 0, 0, 0}, 0.02)}};
+  for (const auto& [name, lens] : lenses) {
+    test::BoardSetup setup = setup_of(lens);
+    setup.views = 8;
+    setup.columns = setup.rows = 6;
+    const TargetViews views = test::board_views(lens, setup).target_views;
+    const auto found = calibrate_lens(views);
+    ASSERT_TRUE(found.ok()) << name << ": " << found.error().message;
+    std::vector<PosedView> posed;
+    for (std::size_t v = 0; v < found->views.size(); ++v) {
+      const ViewResult& view = found->views[v];
+      if (!view.used) continue;
+      posed.push_back({view.pose, {}});
+      for (std::size_t i = 0; i < views.views[v].points.size(); ++i)
+        if (!std::binary_search(view.rejected.begin(), view.rejected.end(), i))
+          posed.back().points.push_back(views.views[v].points[i]);
+    }
+    // The folds stop at a relative change of 1e-7 of the cost, from starts that differ a little.
+    EXPECT_NEAR(found->held_out_rms_px / held_out_rms_px(found->lens, posed, found->freedom), 1, 1e-3)
+        << name;
+  }
+}
+
+TEST(LensCalibration, OnePlaceAtTheEndOfTheWorldIsLeftOut) {
+  const Lens lens = lens_of(180, 150, {0, 0, 0, 0});
+  auto views = test::board_views(lens, setup_of(lens)).target_views;
+  views.views[2].points[3].target_mm.x() = 1e9;  // the largest that a file may hold
+  const auto found = calibrate_lens(views);
+  ASSERT_TRUE(found.ok()) << found.error().message;
+  EXPECT_TRUE(!found->views[2].used || found->views[2].rejected == std::vector<std::size_t>{3});
+  EXPECT_LT((found->lens.center - lens.center).norm(), 0.1);
+}
+
+TEST(LensCalibration, NumbersThatOverflowAreRefusedWithoutAWordOnStderr) {
+  const Lens lens = lens_of(180, 150, {0, 0, 0, 0});
+  test::BoardSetup setup = setup_of(lens);
+  setup.views = 5;
+  auto views = test::board_views(lens, setup).target_views;
+  for (auto& view : views.views) view.points[3].target_mm.x() = 1e300;
+  testing::internal::CaptureStderr();
+  const auto found = calibrate_lens(views);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  ASSERT_FALSE(found.ok());
+  EXPECT_EQ(found.error().kind, ErrorKind::bad_input);
 }
 
 TEST(LensCalibration, ANarrowFieldGetsFewerCoefficientsAndStaysIncreasing) {
@@ -296,7 +350,15 @@ TEST_F(Refused, PointsOnALine) {
   auto views = test::board_views(lens_, setup_of(lens_)).target_views;
   for (auto& view : views.views)
     for (auto& p : view.points) p.target_mm = {p.target_mm.x() + 0.01 * p.target_mm.y(), 0, 0};
-  expect(views, "do not determine");
+  expect(views, "the points of view 0, view 1, view 2, view 3, view 4 and 25 more do not determine");
+}
+
+TEST_F(Refused, TwoGoodViewsAmongLinesNameTheLines) {
+  auto views = test::board_views(lens_, setup_of(lens_)).target_views;
+  views.views.resize(4);
+  for (const std::size_t v : {1u, 3u})
+    for (auto& p : views.views[v].points) p.target_mm = {p.target_mm.x() + 0.01 * p.target_mm.y(), 0, 0};
+  expect(views, "usable in 2 views, allowed at least 3: the points of view 1, view 3 do not determine");
 }
 
 }  // namespace

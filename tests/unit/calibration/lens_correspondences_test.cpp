@@ -47,6 +47,12 @@ TEST_F(CorrespondencesFile, ReadsBackWhatWasWritten) {
   EXPECT_TRUE(read_back->views[1].points.empty());
 }
 
+TEST_F(CorrespondencesFile, ANameThatIsNotUtf8IsWrittenAllTheSame) {
+  const auto read_back = read(to_json({{640, 480}, {{"a\xff", {}}}}));
+  ASSERT_TRUE(read_back.ok()) << read_back.error().message;
+  EXPECT_EQ(read_back->views[0].name, "a\xEF\xBF\xBD");  // U+FFFD
+}
+
 TEST_F(CorrespondencesFile, NamesTheFieldThatIsWrong) {
   const std::string head = R"({"image_size":[640,480],"views":[{"name":"a","points":[)";
   expect_refused("{", "JSON");
@@ -58,7 +64,10 @@ TEST_F(CorrespondencesFile, NamesTheFieldThatIsWrong) {
   expect_refused(R"({"image_size":[640,480],"views":[{}]})", "views[0].points");
   expect_refused(head + "[1,2,3,4]]}]}", "views[0].points[0]");
   expect_refused(head + "[1,2,3,NaN,5]]}]}", "JSON");
-  expect_refused(head + "[1,2,3,1e999,5]]}]}", "");
+  expect_refused(head + "[1,2,3,1e999,5]]}]}", "1e999");
+  expect_refused(head + "[1e300,2,3,4,5]]}]}", "views[0].points[0][0] = 1e+300: allowed -1e+09 to 1e+09 mm");
+  expect_refused(head + "[1,2,-2e9,4,5]]}]}", "views[0].points[0][2] = -2e+09");
+  expect_refused(head + "[1,2,3,1e300,5]]}]}", "views[0].points[0][3] = 1e+300: allowed -640 to 1280 px");
   expect_refused(head + "[1,2,3,null,5]]}]}", "views[0].points[0][3]");
   expect_refused(head + "[1,2,3,4,961]]}]}", "views[0].points[0][4]");
   expect_refused(head + "[1,2,3,4,5],[1,2,3,6,7]]}]}", "views[0].points[1]");

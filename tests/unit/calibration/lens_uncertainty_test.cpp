@@ -110,28 +110,5 @@ TEST(ProjectionUncertainty, NoCovarianceNoUncertainty) {
   EXPECT_EQ(uncertainty.worst_px({0.3, -0.2, 0.5}), 0);
 }
 
-TEST(Coverage, CountsEveryPointThatCountsOnce) {
-  const Lens truth = wide_lens();
-  test::BoardSetup setup;
-  setup.field_rad = truth.max_theta_rad;
-  setup.outliers = 0.03;
-  const TargetViews views = test::board_views(truth, setup).target_views;
-  const auto found = calibrate_lens(views);
-  ASSERT_TRUE(found.ok());
-  std::size_t counted = 0, points = 0;
-  for (const auto& ring : coverage_of(*found, views).points)
-    for (const std::size_t n : ring) counted += n;
-  for (std::size_t v = 0; v < views.views.size(); ++v)
-    points += views.views[v].points.size() - found->views[v].rejected.size();
-  EXPECT_EQ(counted, points);
-}
-
-TEST(Azimuth, GrowsFromTheTopOfTheImageToItsRight) {
-  EXPECT_NEAR(azimuth_rad({0, -1, 1}), 0, 1e-12);
-  EXPECT_NEAR(azimuth_rad({1, 0, 1}), kPi / 2, 1e-12);
-  EXPECT_NEAR(azimuth_rad({0, 1, 1}), kPi, 1e-12);
-  EXPECT_NEAR(azimuth_rad({-1, 0, 1}), 3 * kPi / 2, 1e-12);
-}
-
 }  // namespace
 }  // namespace lightwell
