@@ -12,6 +12,7 @@
 #include "cli/command.h"
 #include "cli/progress.h"
 #include "interface/atomic_file.h"
+#include "interface/same_file.h"
 
 namespace lightwell::cli {
 namespace {
@@ -85,7 +86,17 @@ Result<Input> read_input(const LensOptions& options) {
   return Input{*std::move(views), ""};
 }
 
+Status check_outputs(const LensOptions& options) {
+  for (const std::string& output : {options.out, options.corners_out}) {
+    if (const Status other = check_output_is_no_input(output, {options.corners}); !other) return other;
+    for (const auto& picture : options.pictures)
+      if (const Status other = check_output_is_no_input(output, {picture}); !other) return other;
+  }
+  return {};
+}
+
 int run(const LensOptions& options) {
+  if (const Status outputs = check_outputs(options); !outputs) return fail(outputs.error());
   const auto input = read_input(options);
   if (!input) return fail(input.error());
   const TargetViews& target_views = input->views.target_views;

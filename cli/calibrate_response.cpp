@@ -7,6 +7,7 @@
 #include "calibration/response_report.h"
 #include "cli/command.h"
 #include "interface/atomic_file.h"
+#include "interface/same_file.h"
 
 namespace lightwell::cli {
 namespace {
@@ -50,6 +51,7 @@ Result<calibration::ResponseFitOptions> fit_options(const Options& o) {
 int run(const Options& o) {
   const auto options = fit_options(o);
   if (!options) return fail(options.error());
+  if (const Status other = check_output_is_no_input(o.out, {o.patches}); !other) return fail(other.error());
   const auto patches = calibration::read_patches(o.patches);
   if (!patches) return fail(patches.error());
   const auto report = calibration::calibrate_response(*patches, o.channel, *options);

@@ -3,7 +3,6 @@
 #include "lighting/evaluate.h"
 
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "cli/command.h"
 #include "interface/environment_io.h"
 #include "interface/light_set_io.h"
+#include "interface/option_range.h"
 #include "interface/printable.h"
 #include "lighting/lat_long_image.h"
 
@@ -26,8 +26,6 @@ struct EvaluateOptions {
 };
 
 int run(const EvaluateOptions& options) {
-  if (!std::isfinite(options.rotate_y_deg))
-    return fail(usage("--rotate-y is not a finite number of degrees"));
   const auto environment = read_environment(options.environment);
   if (!environment) return fail(environment.error());
   const auto set = read_light_set(options.lights);
@@ -68,6 +66,7 @@ Command add_evaluate(CLI::App& app) {
       ->type_name("ENV");
   command->add_option("lights", options->lights, "Light set, JSON")->required()->type_name("LIGHTS");
   command->add_option("--rotate-y", options->rotate_y_deg, "Turn the image about +Y first, as `lights` did")
+      ->check(numbers_from(-360, 360, "-360 to 360 degrees"))
       ->type_name("DEG");
   command->add_flag("--json", options->json, "Machine-readable result on stdout");
   return {command, [options] { return run(*options); }};

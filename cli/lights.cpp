@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -16,7 +15,9 @@
 #include "interface/environment_io.h"
 #include "interface/light_set_io.h"
 #include "interface/numbered_sequence.h"
+#include "interface/option_range.h"
 #include "interface/printable.h"
+#include "interface/same_file.h"
 #include "lighting/decompose.h"
 #include "lighting/lat_long_image.h"
 
@@ -66,21 +67,14 @@ Result<Plan> plan_of(const LightsOptions& options) {
   const auto method = method_from_name(options.method);
   if (!method) return usage("--method is " + options.method + ", allowed: " + method_names());
   plan.method = *method;
-  if (options.count < 1 || options.count > kMostLights)
-    return usage("--count is " + std::to_string(options.count) + ", allowed 1 to " +
-                 std::to_string(kMostLights));
   plan.count = static_cast<int>(options.count);
-  if (options.seed < 0 || options.seed > UINT32_MAX)
-    return usage("--seed is " + std::to_string(options.seed) + ", allowed 0 to " +
-                 std::to_string(UINT32_MAX));
   plan.seed = static_cast<std::uint32_t>(options.seed);
   plan.hemisphere = !options.sphere;
-  if (!std::isfinite(options.rotate_y_deg)) return usage("--rotate-y is not a finite number of degrees");
   plan.rotate_y_rad = options.rotate_y_deg * kPi / 180;
-  if (!(options.rate_hz > 0 && options.rate_hz <= 100000))
-    return usage("--rate is " + std::to_string(options.rate_hz) + ", allowed above 0 to 100000 Hz");
   plan.rate_hz = options.rate_hz;
   if (const Status named = check_output_name(options.out); !named) return named.error();
+  if (const Status other = check_output_is_no_input(options.out, {options.environment}); !other)
+    return other.error();
   const auto temporal = temporal_filter(options, plan.method);
   if (!temporal) return temporal.error();
   plan.temporal = *temporal;
@@ -158,6 +152,9 @@ void report(const LightsOptions& options, const Plan& plan, std::size_t frames, 
 int run_sequence(const LightsOptions& options, const Plan& plan) {
   const auto files = sequence_files(options.environment);
   if (!files) return fail(files.error());
+  for (const std::filesystem::path& file : *files)
+    if (const Status other = check_output_is_no_input(options.out, {file}); !other)
+      return fail(other.error());
   auto out = AtomicFileWriter::create(options.out);
   if (!out) return fail(out.error());
   Decomposer decomposer(plan);
@@ -217,17 +214,23 @@ Command add_lights(CLI::App& app) {
                    "Latitude–longitude image, EXR or Radiance HDR, or a numbered sequence ('env_%04d.exr')")
       ->required()
       ->type_name("ENV");
-  command->add_option("--count", o->count, "Number of lights, 1 to 100000")->required()->type_name("N");
+  command->add_option("--count", o->count, "Number of lights, 1 to 100000")
+      ->required()
+      ->check(whole_numbers(1, kMostLights))
+      ->type_name("N");
   command->add_option("--method", o->method, "One of: " + method_names())
       ->capture_default_str()
       ->type_name("M");
   auto* hemisphere = command->add_flag("--hemisphere", o->hemisphere, "The half above the horizon (default)");
   command->add_flag("--sphere", o->sphere, "All of the image")->excludes(hemisphere);
   command->add_option("--seed", o->seed, "Turns the points of standard, havran and uniform; 0: none")
+      ->check(whole_numbers(0, UINT32_MAX))
       ->type_name("S");
   command->add_option("--rotate-y", o->rotate_y_deg, "Turn the image about +Y: azimuth λ comes to λ + DEG")
+      ->check(numbers_from(-360, 360, "-360 to 360 degrees"))
       ->type_name("DEG");
   command->add_option("--rate", o->rate_hz, "Frames a second of a sequence, Hz")
+      ->check(numbers_above_0_to(100000, "above 0 to 100000 Hz"))
       ->capture_default_str()
       ->type_name("HZ");
   command

@@ -7,6 +7,14 @@
 
 namespace {
 
+// The word where a command should stand, if it is what the command line failed on.
+std::string unknown_command(const CLI::App& app) {
+  const CLI::App* last = &app;
+  while (!last->get_subcommands().empty()) last = last->get_subcommands().front();
+  const std::vector<std::string> words = last->remaining();
+  return last->get_require_subcommand_min() == 0 || words.empty() ? std::string() : words.front();
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Lightwell: measure the light on set, relight virtual objects with it", "lightwell"};
   app.require_subcommand(1);
@@ -18,6 +26,10 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    const std::string word = unknown_command(app);
+    if (error.get_exit_code() != 0 && !word.empty())
+      return lightwell::cli::fail(
+          lightwell::cli::usage("unknown command or option '" + word + "'; --help lists them"));
     return app.exit(error) == 0 ? 0 : static_cast<int>(lightwell::ErrorKind::usage);
   }
   for (const auto& command : commands)

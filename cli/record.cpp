@@ -10,6 +10,8 @@
 #include "cli/command.h"
 #include "daemon/record/take_name.h"
 #include "interface/atomic_file.h"
+#include "interface/option_range.h"
+#include "interface/same_file.h"
 
 namespace lightwell::cli {
 namespace {
@@ -35,9 +37,6 @@ void print(const RecordOptions& options, const Recorded& recorded) {
 }
 
 int run(const RecordOptions& options) {
-  constexpr double kWeek = 7 * 24 * 3600;
-  if (!(options.seconds > 0 && options.seconds <= kWeek))
-    return fail(usage("--seconds is out of range: above 0, up to 604800 (a week)"));
   if (options.out.filename().empty())
     return fail(usage("--out " + options.out.string() + " is not a file's name"));
   if (const Status named = check_output_name(options.out); !named) return fail(named.error());
@@ -46,6 +45,12 @@ int run(const RecordOptions& options) {
     return fail(usage("--out " + options.out.string() +
                       ": the daemon takes plain names only, such as take.mkv: " + kTakeNameRule +
                       "; with --source any name will do"));
+  constexpr std::string_view kRecording = "recording:";
+  if (options.source.starts_with(kRecording))
+    if (const Status other =
+            check_output_is_no_input(options.out, {options.source.substr(kRecording.size())});
+        !other)
+      return fail(other.error());
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
   const auto recorded = options.source.empty() ? record_through_daemon(options, interrupted)
@@ -62,6 +67,7 @@ Command add_record(CLI::App& app) {
     RecordOptions options;
     std::string out, codec = "raw";
   };
+  constexpr double kWeek = 7 * 24 * 3600;
   const auto arguments = std::make_shared<Arguments>();
   RecordOptions& options = arguments->options;
   CLI::App* command =
@@ -70,6 +76,7 @@ Command add_record(CLI::App& app) {
       "Example: lightwell record --seconds 10 --out take.mkv\n"
       "         lightwell record --seconds 10 --out take.mkv --source aravis:127.0.0.1 --codec ffv1");
   command->add_option("--seconds", options.seconds, "How long; Ctrl-C ends earlier and keeps the take")
+      ->check(numbers_above_0_to(kWeek, "above 0 to 604800 (a week)"))
       ->required();
   command->add_option("--out", arguments->out, "The take (.mkv); never overwrites")->required();
   command->add_option("--source", options.source,

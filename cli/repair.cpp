@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/progress.h"
 #include "interface/recording.h"
+#include "interface/same_file.h"
 
 namespace lightwell::cli {
 
@@ -24,6 +25,8 @@ Command add_repair(CLI::App& app) {
   command->add_option("--out", options->out, "The new take; never overwrites")->required();
   command->add_flag("--json", options->json, "Machine-readable result on stdout");
   return {command, [options] {
+            if (const Status other = check_output_is_no_input(options->out, {options->broken}); !other)
+              return fail(other.error());
             constexpr std::size_t kSteps = 1000;
             Progress progress(kSteps);
             const auto report = repair_recording(options->broken, options->out, [&](double share) {

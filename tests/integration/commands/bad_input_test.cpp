@@ -21,7 +21,7 @@ class BadInput : public test::CommandTest {
   // Ends with the code, one line on stderr that names what it must, nothing on stdout, nothing written.
   void expect(const std::vector<std::string>& arguments, int code, const std::string& names) {
     const ProcessResult run = lightwell(arguments);
-    EXPECT_EQ(run.exit_code, code) << arguments[0] << ": " << run.err;
+    EXPECT_EQ(run.exit_code, code) << testing::PrintToString(arguments) << run.err;
     EXPECT_THAT(run.err, HasSubstr(names));
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
     EXPECT_EQ(run.out, "");
@@ -41,21 +41,71 @@ TEST_F(BadInput, ValuesOutOfRangeAreWrongUsage) {
   const std::string sky = path("sky.exr");
   for (const char* count : {"0", "-1", "100001", "99999999999999"})
     expect_lights(sky, {"--count", count}, 2, "1 to 100000");
-  expect_lights(sky, {"--count", "many"}, 2, "--count");
+  for (const char* count : {"many", "1e3", "3.5", "", "99999999999999999999", "4 "})
+    expect_lights(sky, {"--count", count}, 2,
+                  "--count: value '" + std::string(count) + "', allowed whole numbers from 1 to 100000");
   expect_lights(sky, {}, 2, "--count");
   for (const char* method : {"structured", "kollig-keller", "penrose", "nonsense", ""})
     expect_lights(sky, {"--count", "4", "--method", method}, 2,
                   "best, standard, havran, median-cut, uniform");
-  expect_lights(sky, {"--count", "4", "--seed", "-1"}, 2, "--seed");
-  expect_lights(sky, {"--count", "4", "--rotate-y", "nan"}, 2, "--rotate-y");
-  expect_lights(sky, {"--count", "4", "--rate", "0"}, 2, "--rate");
+  for (const char* seed : {"-1", "1.5", "4294967296"})
+    expect_lights(sky, {"--count", "4", "--seed", seed}, 2,
+                  "--seed: value '" + std::string(seed) + "', allowed whole numbers from 0 to 4294967295");
+  for (const char* turn : {"nan", "inf", "abc", "1e300", "-360.5", "400", ""}) {
+    const std::string names = "--rotate-y: value '" + std::string(turn) + "', allowed -360 to 360";
+    expect_lights(sky, {"--count", "4", "--rotate-y", turn}, 2, names);
+    expect({"evaluate", sky, path("l.json"), "--rotate-y", turn}, 2, names);
+  }
+  for (const char* rate : {"0", "abc", "nan", "100001"})
+    expect_lights(sky, {"--count", "4", "--rate", rate}, 2,
+                  "--rate: value '" + std::string(rate) + "', allowed above 0 to 100000 Hz");
+  for (const char* seconds : {"0", "abc", "nan", "604801"})
+    expect({"record", "--out", path("o.mkv"), "--seconds", seconds}, 2,
+           "--seconds: value '" + std::string(seconds) + "', allowed above 0 to 604800");
   expect_lights(sky, {"--count", "4", "--temporal", "best"}, 2, "fir, none");
   expect_lights(sky, {"--count", "4", "--temporal", "fir"}, 2, "sequence");
   expect_lights(path("e%d.exr"), {"--count", "4", "--temporal", "fir"}, 2, "standard, havran");
   expect_lights(sky, {"--count", "4", "--sphere", "--hemisphere"}, 2, "--hemisphere");
   expect_lights(sky, {"--count", "4", "--frobnicate"}, 2, "--frobnicate");
   expect({"evaluate", sky}, 2, "lights");
-  expect({"frobnicate"}, 2, "");
+}
+
+TEST_F(BadInput, ACommandThatIsNoneIsNamed) {
+  expect({"frobnicate"}, 2, "'frobnicate'");
+  expect({"--frobnicate"}, 2, "'--frobnicate'");
+  expect({"calibrate", "frobnicate"}, 2, "'frobnicate'");
+  expect({}, 2, "required");
+}
+
+TEST_F(BadInput, RangesIncludeTheirEnds) {
+  for (const auto& [option, value] : {std::pair("--rotate-y", "-360"),
+                                      {"--rotate-y", "360"},
+                                      {"--seed", "0"},
+                                      {"--seed", "4294967295"},
+                                      {"--rate", "100000"},
+                                      {"--seed", "+010"}}) {
+    const auto run =
+        lightwell({"lights", path("sky.exr"), "--count", "1", "--out", path("l.json"), option, value});
+    EXPECT_EQ(run.exit_code, 0) << option << ' ' << value << ": " << run.err;
+  }
+}
+
+TEST_F(BadInput, AnOutputThatIsAnInputIsRefusedAndKept) {
+  const std::string sky = path("sky.exr");
+  const std::string before = read_text_file(sky).value();
+  std::filesystem::create_hard_link(sky, path("link.exr"));
+  std::filesystem::create_symlink(sky, path("soft.exr"));
+  for (const std::string& out : {sky, path("./sky.exr"), path("link.exr"), path("soft.exr")})
+    expect({"lights", sky, "--count", "4", "--out", out}, 2, "output " + out + " is also the input " + sky);
+  for (const char* frame : {"s1.exr", "s2.exr"})
+    ASSERT_TRUE(write_environment(path(frame), CommandTest::sky(8, 4)));
+  expect({"lights", path("s%d.exr"), "--count", "4", "--out", path("s2.exr")}, 2, path("s2.exr"));
+  expect({"repair", sky, "--out", sky}, 2, "is also the input");
+  expect({"record", "--seconds", "1", "--source", "recording:" + sky, "--out", sky}, 2, "is also the input");
+  expect({"calibrate", "response", sky, "--out", sky}, 2, "is also the input");
+  expect({"calibrate", "lens", sky, "--board", "9x6:30", "--out", sky}, 2, "is also the input");
+  EXPECT_EQ(read_text_file(sky).value(), before);
+  EXPECT_TRUE(read_environment(path("s2.exr")));
 }
 
 TEST_F(BadInput, ImagesThatCannotBeReadAreBadInput) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -32,7 +33,8 @@ Outcome run(std::vector<std::string> arguments) {
     app.parse(arguments);
     for (const auto& command : commands)
       if (command.app->parsed()) outcome.code = command.run();
-  } catch (const CLI::ParseError&) {
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "lightwell: %s\n", error.what());  // as main does
     outcome.code = 2;
   }
   outcome.out = testing::internal::GetCapturedStdout();
@@ -147,8 +149,10 @@ TEST_F(TakesCommand, RecordRefusesWhatCannotWorkBeforeAnyFrame) {
   expect_one_line(run({"record", "--seconds", "nan", "--out", out, "--source", source}), 2, "--seconds");
   expect_one_line(run({"record", "--seconds", "1", "--out", "/nonexistent/a.mkv", "--source", source}), 1,
                   "/nonexistent");
-  expect_one_line(run({"record", "--seconds", "1", "--out", take_.string(), "--source", source}), 1,
-                  "exists");
+  expect_one_line(run({"record", "--seconds", "1", "--out", take_.string(), "--source", source}), 2,
+                  "is also the input");
+  const std::string other = folder_.path().string();
+  expect_one_line(run({"record", "--seconds", "1", "--out", other, "--source", source}), 1, "exists");
   expect_one_line(run({"record", "--seconds", "1", "--out", out, "--source", "magic:8"}), 2, "magic:8");
   expect_one_line(run({"record", "--seconds", "1", "--out", out, "--source", "recording:" + out}), 3,
                   "out.mkv");
