@@ -13,9 +13,16 @@
 namespace lightwell::bench {
 
 struct Options {
-  double seconds_per_case = 1;  // time spent on each case, at least kLeastRuns runs
+  double seconds_per_case = 1;  // time spent on each case, at least Turns::least_runs
+  std::string
+      data_folder;  // reference data that is not part of the project; empty: what needs it is left out
 };
-inline constexpr std::size_t kLeastRuns = 20;
+
+// How cases take turns.
+struct Turns {
+  std::size_t in_a_row = 5;  // after a run that warms up and is not counted
+  std::size_t least_runs = 20;
+};
 
 struct Timing {
   double p10_ms = 0;  // NaN where a suite does not keep it
@@ -42,7 +49,7 @@ struct Case {
 // Times cases in turns, so that what else the machine does falls on all of them alike. With a baseline (the
 // first case's name), every row gets `ratio_of_p50_to_<baseline>`.
 std::vector<Row> time_in_turns(const std::string& setting, std::vector<Case> cases, const Options& options,
-                               const std::string& baseline = "");
+                               const std::string& baseline = "", const Turns& turns = {});
 
 struct Suite {
   std::string name;
@@ -51,6 +58,7 @@ struct Suite {
 const std::vector<Suite>& suites();
 
 std::vector<Row> frame_suite(const Options& options);
+std::vector<Row> calibration_suite(const Options& options);
 
 // CPU, compiler, flags, commit, date and all rows: schema "lightwell.bench/1".
 std::string to_json(const std::vector<std::pair<std::string, std::vector<Row>>>& results);

@@ -43,6 +43,7 @@ const std::vector<Suite>& suites() {
   static const std::vector<Suite> all = {
       {"frame", frame_suite},
       {"lights", lights_rows},
+      {"calibration", calibration_suite},
   };
   return all;
 }

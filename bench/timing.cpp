@@ -26,16 +26,15 @@ Timing percentiles(std::vector<double> ms) {
 }  // namespace
 
 std::vector<Row> time_in_turns(const std::string& setting, std::vector<Case> cases, const Options& options,
-                               const std::string& baseline) {
-  constexpr std::size_t kInARow = 5;  // a turn; the run before it warms up and is not counted
+                               const std::string& baseline, const Turns& turns) {
   std::vector<std::vector<double>> ms(cases.size());
   const auto start = Clock::now();
   const double budget_ms = 1000 * options.seconds_per_case * static_cast<double>(cases.size());
   std::size_t input = 0;
-  while (ms_since(start) < budget_ms || ms.front().size() < kLeastRuns)
+  while (ms_since(start) < budget_ms || ms.front().size() < turns.least_runs)
     for (std::size_t c = 0; c < cases.size(); ++c) {
       cases[c].run(input++);
-      for (std::size_t i = 0; i < kInARow; ++i) {
+      for (std::size_t i = 0; i < turns.in_a_row; ++i) {
         const auto begin = Clock::now();
         cases[c].run(input++);
         ms[c].push_back(ms_since(begin));

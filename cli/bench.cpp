@@ -56,6 +56,8 @@ Command add_bench(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--json", asked->json_file, "Write all numbers, CPU, compiler, flags and commit here");
   command->add_option("--svg", asked->svg_folder, "Write a plot of each suite into this folder");
+  command->add_option("--data", asked->options.data_folder,
+                      "Folder of reference data (fisheye_cal/…): cases that need it run too");
   command->add_option("--seconds", asked->options.seconds_per_case, "Time for each case")
       ->check(CLI::Range(0.0, 600.0))
       ->capture_default_str();

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/brackets.h"
+#include "calibration/photometric/brackets.h"
 #include "cli/command.h"
 #include "cli/progress.h"
 #include "interface/atomic_file.h"

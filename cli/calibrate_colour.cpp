@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "calibration/colour_fit.h"
+#include "calibration/photometric/colour_fit.h"
 #include "cli/command.h"
 #include "interface/atomic_file.h"
 #include "interface/calibration_io.h"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "calibration/flat_fit.h"
+#include "calibration/photometric/flat_fit.h"
 #include "cli/command.h"
 #include "interface/atomic_file.h"
 #include "interface/calibration_io.h"

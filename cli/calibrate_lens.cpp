@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "calibration/lens_calibration.h"
-#include "calibration/lens_report.h"
-#include "calibration/picture_views.h"
+#include "calibration/lens/lens_calibration.h"
+#include "calibration/lens/lens_report.h"
+#include "calibration/target/picture_views.h"
 #include "cli/command.h"
 #include "cli/progress.h"
 #include "interface/atomic_file.h"
@@ -27,9 +27,10 @@ struct LensOptions {
   bool json = false;
 };
 
-void print_text(const LensCalibration& c, const TargetViews& target_views, const std::string& out) {
+void print_text(const calibration::LensCalibration& c, const calibration::TargetViews& target_views,
+                const std::string& out) {
   std::size_t used = 0;
-  for (const ViewResult& view : c.views) {
+  for (const calibration::ViewResult& view : c.views) {
     used += view.used;
     if (!view.used) std::printf("not used: %s: %s\n", view.name.c_str(), view.reason.c_str());
   }
@@ -46,18 +47,18 @@ void print_text(const LensCalibration& c, const TargetViews& target_views, const
         "width\n",
         c.shape->change_mm[0], c.shape->change_mm[1], c.shape->change_mm.tail<3>().cwiseAbs().maxCoeff());
   std::printf("field             to %.1f degrees off axis\n", c.lens.max_theta_rad * 180 / kPi);
-  if (const std::string gaps = coverage_gaps(c, target_views); !gaps.empty())
+  if (const std::string gaps = calibration::coverage_gaps(c, target_views); !gaps.empty())
     std::printf("no points         %s\n", gaps.c_str());
   std::printf("written           %s\n", out.c_str());
 }
 
 struct Input {
-  PictureViews views;
+  calibration::PictureViews views;
   std::string name;  // for messages
 };
 
-Result<Board> board_of(const LensOptions& options) {
-  auto board = board_from_text(options.board);
+Result<calibration::Board> board_of(const LensOptions& options) {
+  auto board = calibration::board_from_text(options.board);
   if (!board || options.marker_mm == 0) return board;
   if (!(options.marker_mm > 0 && options.marker_mm < board->pitch_mm))
     return usage("--marker is " + std::to_string(options.marker_mm) +
@@ -73,7 +74,7 @@ Result<Input> read_input(const LensOptions& options) {
                           : "pictures with --board, or --corners, are required");
   if (!pictures) {
     if (!options.board.empty()) return usage("--board goes with pictures, not with --corners");
-    auto views = read_target_views(options.corners);
+    auto views = calibration::read_target_views(options.corners);
     if (!views) return views.error();
     return Input{{*std::move(views), {}}, options.corners + ": "};
   }
@@ -81,7 +82,8 @@ Result<Input> read_input(const LensOptions& options) {
   const auto board = board_of(options);
   if (!board) return board.error();
   Progress progress(options.pictures.size());
-  auto views = views_of_pictures(options.pictures, *board, [&](std::size_t n) { progress.done(n); });
+  auto views =
+      calibration::views_of_pictures(options.pictures, *board, [&](std::size_t n) { progress.done(n); });
   if (!views) return views.error();
   return Input{*std::move(views), ""};
 }
@@ -99,22 +101,24 @@ int run(const LensOptions& options) {
   if (const Status outputs = check_outputs(options); !outputs) return fail(outputs.error());
   const auto input = read_input(options);
   if (!input) return fail(input.error());
-  const TargetViews& target_views = input->views.target_views;
-  auto calibration =
-      calibrate_lens(target_views, options.pictures.empty() ? TargetTrust::exact : TargetTrust::printed);
-  if (!calibration) return fail({calibration.error().kind, input->name + calibration.error().message});
+  const calibration::TargetViews& target_views = input->views.target_views;
+  auto solved =
+      calibration::calibrate_lens(target_views, options.pictures.empty() ? calibration::TargetTrust::exact
+                                                                         : calibration::TargetTrust::printed);
+  if (!solved) return fail({solved.error().kind, input->name + solved.error().message});
   for (std::size_t i = 0; i < input->views.reasons.size(); ++i)
-    if (!input->views.reasons[i].empty()) calibration->views[i].reason = input->views.reasons[i];
-  const nlohmann::ordered_json report = lens_report(*calibration, target_views);
+    if (!input->views.reasons[i].empty()) solved->views[i].reason = input->views.reasons[i];
+  const nlohmann::ordered_json report = calibration::lens_report(*solved, target_views);
   if (!options.corners_out.empty())
-    if (const Status status = write_file_atomically(options.corners_out, to_json(target_views)); !status)
+    if (const Status status = write_file_atomically(options.corners_out, calibration::to_json(target_views));
+        !status)
       return fail(status.error());
   if (const Status status = write_file_atomically(options.out, report.dump() + "\n"); !status)
     return fail(status.error());
   if (options.json)
     std::printf("%s\n", report.dump().c_str());
   else
-    print_text(*calibration, target_views, options.out);
+    print_text(*solved, target_views, options.out);
   return 0;
 }
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "calibration/html_report.h"
+#include "calibration/report/html_report.h"
 #include "cli/command.h"
 #include "interface/atomic_file.h"
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "calibration/response_report.h"
+#include "calibration/photometric/response_report.h"
 #include "cli/command.h"
 #include "interface/atomic_file.h"
 #include "interface/same_file.h"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "calibration/illuminance_check.h"
+#include "calibration/photometric/illuminance_check.h"
 #include "cli/command.h"
 #include "interface/calibration_io.h"
 #include "interface/environment_io.h"

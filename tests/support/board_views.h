@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "calibration/correspondences.h"
+#include "calibration/lens/correspondences.h"
 #include "lighting/lens.h"
 
 namespace lightwell::test {
@@ -27,7 +27,7 @@ struct BoardSetup {
 };
 
 struct SyntheticViews {
-  TargetViews target_views;
+  calibration::TargetViews target_views;
   std::set<std::pair<std::size_t, std::size_t>> wrong;  // (view, point) of the outliers
 };
 
@@ -51,7 +51,7 @@ inline SyntheticViews board_views(const Lens& lens, const BoardSetup& setup) {
     const Eigen::Matrix3d rotation = facing * Eigen::AngleAxisd(tilt, axis).toRotationMatrix() *
                                      Eigen::AngleAxisd(2 * kPi * unit(random), Vec3d::UnitZ());
     const Vec3d half(setup.pitch_mm * (setup.columns - 1) / 2, setup.pitch_mm * (setup.rows - 1) / 2, 0);
-    TargetView view{"view " + std::to_string(v), {}};
+    calibration::TargetView view{"view " + std::to_string(v), {}};
     for (int r = 0; r < setup.rows; ++r)
       for (int c = 0; c < setup.columns; ++c) {
         const Vec3d target(setup.pitch_mm * c, setup.pitch_mm * r, 0);

@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "calibration/lens_calibration.h"
+#include "calibration/lens/lens_calibration.h"
 #include "interface/atomic_file.h"
 #include "interface/calibration_io.h"
+#include "tests/support/babelcalib_corners.h"
 #include "tests/support/board_views.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
@@ -62,29 +61,6 @@ class LensCommand : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-// BabelCalib's corner lists: lines "board,id,…,u,v", corner id = 22 y + x, pitch .75.
-std::optional<TargetViews> ov_plane(const std::string& part) {
-  const auto folder = kData / "babelcalib_ov_plane" / "corners" / part;
-  if (!std::filesystem::exists(folder)) return {};
-  TargetViews out{{1280, 800}, {}};
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.path().extension() == ".orpc") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  for (const auto& file : files) {
-    TargetView view{file.filename().string(), {}};
-    std::ifstream in(file);
-    for (std::string line; std::getline(in, line);) {
-      int board = 0, id = 0, state = 0;
-      double u = 0, v = 0;
-      if (std::sscanf(line.c_str(), "%d,%d,%d,%lf,%lf", &board, &id, &state, &u, &v) == 5)
-        view.points.push_back({{0.75 * (id % 22), 0.75 * (id / 22), 0}, {u, v}});
-    }
-    out.views.push_back(std::move(view));
-  }
-  return out;
-}
-
 TEST_F(LensCommand, UrbanFisheyeToThreeTenthsOfAPixelOnThirteenBoards) {
   const std::vector<std::string> files = urban();
   if (files.size() != 15) GTEST_SKIP() << "urban_fisheye1 is not in " << kData;
@@ -102,9 +78,11 @@ TEST_F(LensCommand, UrbanFisheyeToThreeTenthsOfAPixelOnThirteenBoards) {
 }
 
 TEST_F(LensCommand, BabelCalibsCornersFromNoGuess) {
-  const auto train = ov_plane("train"), held = ov_plane("test");
+  const auto corners = kData / "babelcalib_ov_plane" / "corners";
+  const auto train = test::babelcalib_corners(corners / "train");
+  const auto held = test::babelcalib_corners(corners / "test");
   if (!train || !held) GTEST_SKIP() << "babelcalib_ov_plane is not in " << kData;
-  ASSERT_TRUE(write_file_atomically(path("corners.json"), to_json(*train)));
+  ASSERT_TRUE(write_file_atomically(path("corners.json"), calibration::to_json(*train)));
   const ProcessResult run = calibrate({"--corners", path("corners.json"), "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const json report = json::parse(run.out);
@@ -114,8 +92,8 @@ TEST_F(LensCommand, BabelCalibsCornersFromNoGuess) {
   ASSERT_TRUE(lens.ok()) << lens.error().message;
   double sum = 0;
   std::size_t count = 0;
-  for (const TargetView& view : held->views) {
-    const ViewResult fit = fit_view(*lens, view);
+  for (const calibration::TargetView& view : held->views) {
+    const calibration::ViewResult fit = calibration::fit_view(*lens, view);
     ASSERT_TRUE(fit.used) << view.name;
     for (const Vec2d& error : fit.residuals_px) sum += error.squaredNorm();
     count += fit.residuals_px.size();
@@ -165,7 +143,8 @@ TEST_F(LensCommand, BadFilesAreNamed) {
 
 TEST_F(LensCommand, AFolderThatIsMissingIsAFailure) {
   Lens lens{{640, 640}, {180, 180}, {330, 310}, {0, 0, 0, 0}, kPi / 2};
-  ASSERT_TRUE(write_file_atomically(path("corners.json"), to_json(test::board_views(lens, {}).target_views)));
+  ASSERT_TRUE(write_file_atomically(path("corners.json"),
+                                    calibration::to_json(test::board_views(lens, {}).target_views)));
   const ProcessResult run = test::run_process(
       LIGHTWELL_BIN_DIR "/lightwell",
       {"calibrate", "lens", "--corners", path("corners.json"), "--out", path("absent/lens.json")});

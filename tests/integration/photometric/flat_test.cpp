@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "calibration/flat_fit.h"
+#include "calibration/photometric/flat_fit.h"
 #include "daemon/simulator/frame_generator.h"
 #include "daemon/simulator/probe_setup.h"
 #include "interface/calibration_io.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/colour_fit.h"
+#include "calibration/photometric/colour_fit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/field_coverage.h"
+#include "calibration/lens/field_coverage.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/board_views.h"
 
-namespace lightwell {
+namespace lightwell::calibration {
 namespace {
 
 TEST(FieldCoverage, CountsEveryPointThatCountsOnce) {
@@ -33,4 +33,4 @@ TEST(Azimuth, GrowsFromTheTopOfTheImageToItsRight) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::calibration

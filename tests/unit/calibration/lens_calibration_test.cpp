@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/lens_calibration.h"
+#include "calibration/lens/lens_calibration.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibration/lens_selection.h"
-#include "calibration/lens_start.h"
+#include "calibration/lens/lens_selection.h"
+#include "calibration/lens/lens_start.h"
 #include "tests/support/board_views.h"
 
-namespace lightwell {
+namespace lightwell::calibration {
 namespace {
 
 using testing::HasSubstr;
@@ -362,4 +362,4 @@ TEST_F(Refused, TwoGoodViewsAmongLinesNameTheLines) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::calibration

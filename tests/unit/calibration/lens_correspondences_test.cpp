@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "calibration/correspondences.h"
+#include "calibration/lens/correspondences.h"
 #include "interface/atomic_file.h"
 #include "tests/support/temporary_folder.h"
 
-namespace lightwell {
+namespace lightwell::calibration {
 namespace {
 
 using testing::HasSubstr;
@@ -76,4 +76,4 @@ TEST_F(CorrespondencesFile, NamesTheFieldThatIsWrong) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::calibration

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/lens_uncertainty.h"
+#include "calibration/lens/lens_uncertainty.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "tests/support/board_views.h"
 
-namespace lightwell {
+namespace lightwell::calibration {
 namespace {
 
 Lens wide_lens() {
@@ -111,4 +111,4 @@ TEST(ProjectionUncertainty, NoCovarianceNoUncertainty) {
 }
 
 }  // namespace
-}  // namespace lightwell
+}  // namespace lightwell::calibration

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/response_fit.h"
+#include "calibration/photometric/response_fit.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-#include "calibration/student.h"
+#include "calibration/photometric/student.h"
 
 namespace lightwell::calibration {
 namespace {

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/lens/correspondences.h"
+#include "calibration/lens/lens_adjustment.h"
+#include "lighting/lens.h"
+
+namespace lightwell::calibration {
+
+// What became of one view.
+struct ViewResult {
+  std::string name;
+  bool used = false;
+  std::string reason;  // why it was not used; empty where it was
+  double rms_px = 0;   // √mean(du² + dv²) of the points that count; of all where it is not used
+  std::vector<std::size_t> rejected;  // points left out, by index
+  TargetPose pose;
+  std::vector<Vec2d> residuals_px;  // projection less pixel of every point; empty where no pose was found
+};
+
+struct LensCalibration {
+  Lens lens;  // max_theta_rad: the largest angle of a point that counts
+  LensFreedom freedom;
+  Eigen::Matrix<double, 8, 8> covariance;  // fx, fy, cx, cy, k1 … k4; zero rows for what is held
+  double rms_px = 0;                       // √mean(du² + dv²) over the points that count
+  // The same for views held out, a lens of this freedom fitted to the others; infinite where too few are left to fit
+  // one to.
+  double held_out_rms_px = 0;
+  double noise_px = 0;               // standard deviation of a coordinate, degrees of freedom counted
+  std::vector<ViewResult> views;     // in the order given
+  std::optional<TargetShape> shape;  // of the board, where it was asked for and the views support it
+};
+
+// Kannala–Brandt lens from views of a target, without an initial guess.
+// Points further than 5 robust standard deviations off are left out, views with half of their points so far off
+// too; both come back when the lens explains them. Coefficients: dropped from the highest while the held-out
+// error (cross-validation by views) falls by more than 1 %; aspect: free where the corrected AIC asks for it.
+// bad_input names the view or the reason: fewer than 3 usable views, all views parallel, all points in the middle,
+// points that fit no lens.
+// Whether the target's points are exact, or a printed grid whose stretch, shear and bow are to be found as far as
+// the views support it (corrected AIC). All views then show one board; turned by 180 degrees it is the same.
+enum class TargetTrust { exact, printed };
+Result<LensCalibration> calibrate_lens(const TargetViews& target_views,
+                                       TargetTrust trust = TargetTrust::exact);
+
+// Pose alone, the lens held: what a test view says of a lens. used is false where no pose is found.
+ViewResult fit_view(const Lens& lens, const TargetView& view);
+
+}  // namespace lightwell::calibration

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "calibration/lens/lens_adjustment.h"
+
+namespace lightwell::calibration {
+
+// How much of the model the data support.
+struct LensSelection {
+  LensFreedom freedom;
+  double held_out_rms_px = 0;  // √mean(du² + dv²) of views that were not fitted to, their poses alone
+};
+
+// Whether the views ask for the board's shape: by the corrected Akaike criterion. views: with the points of the square
+// board; shape: in, the square one, out, the one found.
+bool shape_is_supported(const Lens& lens, const std::vector<PosedView>& views, TargetShape& shape);
+
+// Aspect by the corrected Akaike criterion (Hurvich and Tsai 1989). Coefficients by cross-validation in at most
+// five parts by views: dropped from the highest as long as the held-out error falls by more than
+// 1 %. Not the fewest: a coefficient
+// wrongly held at 0 biases the others by more than their standard deviation, one wrongly freed does not.
+// lens, views: solved with everything free.
+LensSelection select_freedom(const Lens& lens, const std::vector<PosedView>& views);
+
+// √mean(du² + dv²) in pixels over views that the lens was not fitted to, their poses alone: in at most five parts by
+// views, each part held out once. Infinite where the views that remain determine no lens.
+double held_out_rms_px(const Lens& lens, const std::vector<PosedView>& views, const LensFreedom& freedom);
+
+}  // namespace lightwell::calibration

@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/photometric/colour_fit.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "calibration/photometric/csv_table.h"
+
+namespace lightwell::calibration {
+namespace {
+
+constexpr std::size_t kFewestPatches = 4;  // three for the matrix, and one that checks
+const Eigen::RowVector3d kLuminance(0.2126, 0.7152, 0.0722);
+
+// IEC 61966-2-1, from the primaries' and D65's chromaticities.
+Eigen::Matrix3d rec709_from_xyz() {
+  Eigen::Matrix3d xyz_from_rec709;
+  const std::array<std::array<double, 2>, 3> xy = {{{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}}};
+  for (std::size_t c = 0; c < 3; ++c)
+    xyz_from_rec709.col(static_cast<Eigen::Index>(c)) =
+        Eigen::Vector3d(xy[c][0], xy[c][1], 1 - xy[c][0] - xy[c][1]) / xy[c][1];
+  const Eigen::Vector3d white(0.3127 / 0.3290, 1, (1 - 0.3127 - 0.3290) / 0.3290);
+  const Eigen::Vector3d scale = xyz_from_rec709.inverse() * white;
+  return (xyz_from_rec709 * scale.asDiagonal()).inverse();
+}
+
+Result<Eigen::Vector3d> three(const CsvTable& table, std::size_t row,
+                              const std::array<const char*, 3>& columns, double lowest, double highest,
+                              const char* allowed) {
+  Eigen::Vector3d out;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto value = table.number(row, columns[c], lowest, highest, allowed);
+    if (!value) return value.error();
+    out[static_cast<Eigen::Index>(c)] = *value;
+  }
+  return out;
+}
+
+Result<Eigen::Vector3d> camera_of(const CsvTable& table, std::size_t row, const Response& response,
+                                  bool codes) {
+  if (!codes)
+    return three(table, row, {"camera_r", "camera_g", "camera_b"}, -1e9, 1e9, "a number from -1e9 to 1e9");
+  auto value = three(table, row, {"code_r", "code_g", "code_b"}, 0, 65535, "a number from 0 to 65535");
+  if (!value) return value;
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    if ((*value)[c] >= response.clip_code)
+      return Error{ErrorKind::bad_input, table.place(row) + ": code = " + std::to_string((*value)[c]) +
+                                             " is clipped: allowed below " +
+                                             std::to_string(response.clip_code)};
+    (*value)[c] = response.luminance_cd_m2((*value)[c]);
+  }
+  return value;
+}
+
+std::size_t white_of(const std::vector<ColourPatch>& patches) {
+  std::size_t best = 0;
+  double least = 1e300;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    std::string name = patches[i].name.substr(0, 5);
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (name == "white") return i;
+    const double y = kLuminance * patches[i].rec709;
+    const double colourful = (patches[i].rec709.maxCoeff() - patches[i].rec709.minCoeff()) / y;
+    // A patch twice as bright may be 2 % more colourful.
+    const double cost = colourful - 0.02 * std::log2(y);
+    if (cost < least) least = cost, best = i;
+  }
+  return best;
+}
+
+}  // namespace
+
+Result<std::vector<ColourPatch>> read_chart(const std::filesystem::path& file, const Response& response) {
+  const auto table = CsvTable::read(file);
+  if (!table) return table.error();
+  const bool codes = table->has("code_r"), xyz = table->has("X");
+  if (const Status status = codes ? table->require({"code_r", "code_g", "code_b"})
+                                  : table->require({"camera_r", "camera_g", "camera_b"});
+      !status)
+    return status.error();
+  if (const Status status =
+          xyz ? table->require({"X", "Y", "Z"}) : table->require({"rec709_r", "rec709_g", "rec709_b"});
+      !status)
+    return status.error();
+  std::vector<ColourPatch> patches;
+  for (std::size_t row = 0; row < table->rows(); ++row) {
+    const auto camera = camera_of(*table, row, response, codes);
+    if (!camera) return camera.error();
+    const auto target = xyz ? three(*table, row, {"X", "Y", "Z"}, 0, 1e9, "a number from 0 to 1e9")
+                            : three(*table, row, {"rec709_r", "rec709_g", "rec709_b"}, -1e9, 1e9,
+                                    "a number from -1e9 to 1e9");
+    if (!target) return target.error();
+    ColourPatch patch{table->text(row, "name"), *camera,
+                      xyz ? Eigen::Vector3d(rec709_from_xyz() * *target) : *target, false};
+    if (patch.name.empty()) patch.name = "line " + std::to_string(table->line(row));
+    if (!(kLuminance * patch.rec709 > 0))
+      return Error{ErrorKind::bad_input, table->place(row) + ": luminance = " +
+                                             std::to_string(kLuminance * patch.rec709) + ": allowed above 0"};
+    const std::string use = table->text(row, "use");
+    if (!use.empty() && use != "fit" && use != "check")
+      return Error{ErrorKind::bad_input,
+                   table->place(row) + ": use = " + use.substr(0, 40) + ": allowed fit, check"};
+    patch.check = use == "check";
+    patches.push_back(std::move(patch));
+  }
+  return patches;
+}
+
+Result<ColourFit> fit_colour(const std::vector<ColourPatch>& all, const std::string& name) {
+  std::vector<ColourPatch> patches;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(patches),
+               [](const ColourPatch& p) { return !p.check; });
+  if (patches.size() < kFewestPatches)
+    return Error{ErrorKind::bad_input, name +
+                                           ": number of patches to fit = " + std::to_string(patches.size()) +
+                                           ": allowed at least 4; a chart has 24"};
+  const auto n = static_cast<Eigen::Index>(patches.size());
+  Eigen::MatrixXd camera(n, 3), target(n, 3);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const ColourPatch& p = patches[static_cast<std::size_t>(i)];
+    const double y = kLuminance * p.rec709;
+    camera.row(i) = p.camera.transpose() / y;
+    target.row(i) = p.rec709.transpose() / y;
+  }
+  const Eigen::VectorXd sizes = camera.jacobiSvd().singularValues();
+  if (!(sizes[2] > 1e-4 * sizes[0]))
+    return Error{ErrorKind::bad_input,
+                 name +
+                     ": the camera's colours lie in a plane: allowed patches of red, green "
+                     "and blue beside grey"};
+  const ColourPatch& white = patches[white_of(patches)];
+  // Each row of M: normal equations with the white patch as a Lagrange condition.
+  Eigen::Matrix4d kkt = Eigen::Matrix4d::Zero();
+  kkt.topLeftCorner<3, 3>() = camera.transpose() * camera;
+  const double scale = kkt(0, 0) / white.camera.norm();
+  kkt.topRightCorner<3, 1>() = scale * white.camera;
+  kkt.bottomLeftCorner<1, 3>() = scale * white.camera.transpose();
+  const Eigen::FullPivLU<Eigen::Matrix4d> solver(kkt);
+  ColourFit fit;
+  fit.white = white.name;
+  for (Eigen::Index r = 0; r < 3; ++r) {
+    Eigen::Vector4d right;
+    right << camera.transpose() * target.col(r), scale * white.rec709[r];
+    fit.rec709_from_camera.row(r) = solver.solve(right).head<3>().transpose();
+  }
+  if (!(fit.rec709_from_camera.cwiseAbs().maxCoeff() < 1e3))
+    return Error{ErrorKind::bad_input,
+                 name +
+                     ": the matrix has coefficients above 1000: allowed patches whose colours "
+                     "the camera tells apart"};
+  double square = 0;
+  for (const ColourPatch& p : all) {
+    const double y = kLuminance * p.rec709;
+    const Eigen::Vector3d error = (fit.rec709_from_camera * p.camera - p.rec709) / y;
+    fit.residuals.push_back({p.name, p.check, error, kLuminance * error});
+    if (!p.check) square += error.squaredNorm();
+  }
+  fit.rms_error = std::sqrt(square / static_cast<double>(3 * n));
+  return fit;
+}
+
+nlohmann::ordered_json report_to_json(const ColourFit& fit) {
+  nlohmann::ordered_json out = {
+      {"schema", "lightwell.colour-fit/1"}, {"white", fit.white}, {"rms_error", fit.rms_error}};
+  for (Eigen::Index r = 0; r < 3; ++r)
+    out["rec709_from_camera"].push_back(
+        {fit.rec709_from_camera(r, 0), fit.rec709_from_camera(r, 1), fit.rec709_from_camera(r, 2)});
+  for (const auto& p : fit.residuals)
+    out["patches"].push_back({{"patch", p.name},
+                              {"use", p.check ? "check" : "fit"},
+                              {"error", {p.error[0], p.error[1], p.error[2]}},
+                              {"luminance_error", p.luminance_error}});
+  return out;
+}
+
+}  // namespace lightwell::calibration

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/photometric/patches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "calibration/photometric/csv_table.h"
+
+namespace lightwell::calibration {
+namespace {
+
+constexpr std::size_t kFewestPatches =
+    4;                              // a logarithm has three parameters, and one patch has to check them
+constexpr double kNoiseSigmas = 3;  // codes may fall by so many standard deviations from patch to patch
+
+std::string shown(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+Result<Patch> patch_of(const CsvTable& table, std::size_t row) {
+  Patch patch;
+  const auto luminance = table.number(row, "luminance_cd_m2", 0, 1e12, "a number from 0 to 1e12");
+  if (!luminance) return luminance.error();
+  const auto code = table.number(row, "code", 0, 65535, "a number from 0 to 65535");
+  if (!code) return code.error();
+  patch.luminance_cd_m2 = *luminance;
+  patch.code = *code;
+  if (table.has("code_sigma") && !table.text(row, "code_sigma").empty()) {
+    const auto sigma = table.number(row, "code_sigma", 0, 65535, "a number from 0 to 65535");
+    if (!sigma) return sigma.error();
+    patch.code_sigma = *sigma;
+  }
+  patch.channel = table.text(row, "channel");
+  patch.name = table.text(row, "name");
+  if (patch.name.empty()) patch.name = "line " + std::to_string(table.line(row));
+  return patch;
+}
+
+Error bad_patch(const PatchSet& set, const Patch& patch, const std::string& what) {
+  return {ErrorKind::bad_input, set.file + ": " + patch.name + ": " + what};
+}
+
+Status check_clipping(const PatchSet& set, double clip_code) {
+  for (const auto* patches : {&set.fit, &set.check})
+    for (const Patch& patch : *patches)
+      if (patch.code <= 0 || patch.code >= clip_code)
+        return bad_patch(set, patch,
+                         "code = " + shown(patch.code) + " is clipped: allowed above 0 and below " +
+                             shown(clip_code) + "; leave the patch out");
+  return {};
+}
+
+Status check_order(const PatchSet& set, double code_sigma) {
+  const auto sigma = [=](const Patch& p) { return p.code_sigma > 0 ? p.code_sigma : code_sigma; };
+  for (std::size_t i = 1; i < set.fit.size(); ++i) {
+    const Patch &before = set.fit[i - 1], &patch = set.fit[i];
+    if (patch.luminance_cd_m2 == before.luminance_cd_m2)
+      return bad_patch(set, patch,
+                       "luminance_cd_m2 = " + shown(patch.luminance_cd_m2) + " stands in " + before.name +
+                           " too: allowed once, with the mean of its codes");
+    const double noise = kNoiseSigmas * std::hypot(sigma(patch), sigma(before));
+    if (patch.code < before.code - noise)
+      return bad_patch(set, patch,
+                       "code = " + shown(patch.code) + " at " + shown(patch.luminance_cd_m2) +
+                           " cd/m2 lies below the " + shown(before.code) + " of " + before.name + " at " +
+                           shown(before.luminance_cd_m2) +
+                           " cd/m2: codes are not monotone, allowed are codes that rise with luminance");
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<PatchSet> read_patches(const std::filesystem::path& file) {
+  const auto table = CsvTable::read(file);
+  if (!table) return table.error();
+  if (const Status status = table->require({"luminance_cd_m2", "code"}); !status) return status.error();
+  PatchSet set;
+  set.file = file.string();
+  for (std::size_t row = 0; row < table->rows(); ++row) {
+    const auto patch = patch_of(*table, row);
+    if (!patch) return patch.error();
+    const std::string use = table->text(row, "use");
+    if (use == "check")
+      set.check.push_back(*patch);
+    else if (use.empty() || use == "fit")
+      set.fit.push_back(*patch);
+    else
+      return Error{ErrorKind::bad_input,
+                   table->place(row) + ": use = " + use.substr(0, 40) + ": allowed fit, check"};
+  }
+  return set;
+}
+
+PatchSet of_channel(const PatchSet& set, const std::string& channel) {
+  PatchSet out;
+  out.file = set.file;
+  const auto same = [&](const Patch& patch) { return patch.channel == channel; };
+  std::copy_if(set.fit.begin(), set.fit.end(), std::back_inserter(out.fit), same);
+  std::copy_if(set.check.begin(), set.check.end(), std::back_inserter(out.check), same);
+  return out;
+}
+
+std::vector<std::string> channels_of(const PatchSet& set) {
+  std::vector<std::string> channels;
+  for (const auto* patches : {&set.fit, &set.check})
+    for (const Patch& patch : *patches)
+      if (std::find(channels.begin(), channels.end(), patch.channel) == channels.end())
+        channels.push_back(patch.channel);
+  return channels;
+}
+
+Result<PatchSet> ordered_and_checked(PatchSet set, double clip_code, double code_sigma) {
+  const auto darker = [](const Patch& a, const Patch& b) { return a.luminance_cd_m2 < b.luminance_cd_m2; };
+  std::stable_sort(set.fit.begin(), set.fit.end(), darker);
+  std::stable_sort(set.check.begin(), set.check.end(), darker);
+  if (set.fit.size() < kFewestPatches)
+    return Error{ErrorKind::bad_input, set.file +
+                                           ": number of patches to fit = " + std::to_string(set.fit.size()) +
+                                           ": allowed at least " + std::to_string(kFewestPatches) +
+                                           "; six over the whole range are good"};
+  if (set.fit.size() > kMostPatches)
+    return Error{ErrorKind::bad_input,
+                 set.file + ": number of patches to fit = " + std::to_string(set.fit.size()) +
+                     ": allowed at most " + std::to_string(kMostPatches) + "; take the mean of neighbours"};
+  if (const Status status = check_clipping(set, clip_code); !status) return status.error();
+  if (const Status status = check_order(set, code_sigma); !status) return status.error();
+  return set;
+}
+
+}  // namespace lightwell::calibration

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "calibration/report/html_report.h"
+#include "calibration/report/svg_plot.h"
+#include "interface/response_json.h"
+
+namespace lightwell::calibration {
+namespace {
+
+using nlohmann::json;
+
+double value_or(const json& object, const char* key, double otherwise) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number() ? found->get<double>() : otherwise;
+}
+
+struct Range {
+  double low = 0.01, high = 1e6;  // cd/m²
+};
+
+Range range_of(const Response& response, const json& fit) {
+  double low = 1e300, high = 0;
+  for (const char* list : {"fit", "check"})
+    if (fit.contains(list))
+      for (const json& patch : fit.at(list))
+        if (const double l = value_or(patch, "luminance_cd_m2", 0); l > 0)
+          low = std::min(low, l), high = std::max(high, l);
+  if (high > 0) return {low / 2, high * 2};
+  high = response.luminance_cd_m2(response.clip_code);
+  low = std::max(response.luminance_cd_m2(response.black_code + 1), high * 1e-9);
+  return {low, high};
+}
+
+std::string curve_plot(const Response& response, const json& fit, const Range& range) {
+  double top = 0, bottom = 1e300;
+  SvgPlot::Points curve;
+  for (int i = 0; i <= 300; ++i) {
+    const double l = range.low * std::pow(range.high / range.low, i / 300.0);
+    curve.emplace_back(l, response.code(l));
+    top = std::max(top, curve.back().second);
+    bottom = std::min(bottom, curve.back().second);
+  }
+  SvgPlot plot(620, 330, {range.low, range.high, true, "luminance, cd/m²"},
+               {std::min(0.0, bottom), 1.05 * top, false, "code"});
+  plot.line(curve, "curve");
+  for (const char* list : {"fit", "check"})
+    if (fit.contains(list))
+      for (const json& patch : fit.at(list)) {
+        const double l = value_or(patch, "luminance_cd_m2", 0), code = value_or(patch, "code", 0);
+        if (const auto interval = patch.find("interval_95_cd_m2");
+            interval != patch.end() && interval->size() == 2 && (*interval)[0].is_number() &&
+            (*interval)[1].is_number())
+          plot.bar_x(std::max((*interval)[0].get<double>(), range.low), (*interval)[1].get<double>(), code,
+                     "error");
+        const bool used = patch.value("used", true);
+        plot.dot(l, code,
+                 std::string(list) == "check" ? "check"
+                 : used                       ? "fit"
+                                              : "out",
+                 patch.value("patch", std::string()) + ": " + formatted("%.3g cd/m2", l) + ", code " +
+                     formatted("%.1f", code));
+      }
+  return plot.svg();
+}
+
+// Measured over true luminance, with the claimed 95 %.
+std::string error_plot(const json& file, const json& fit, const Range& range) {
+  const double t95 = value_or(fit, "t95", 2);
+  double most = 2;
+  for (const char* list : {"fit", "check"})
+    for (const json& patch : fit.value(list, json::array()))
+      if (patch.value("used", true))
+        most = std::max(most, 130 * std::abs(value_or(patch, "relative_error", 0)));
+  most = std::min(most, 100.0);
+  SvgPlot plot(620, 220, {range.low, range.high, true, "luminance, cd/m²"}, {-most, most, false, "error, %"});
+  SvgPlot::Points low, high;
+  const json& table = file.at("table");
+  if (table.contains("relative_sigma")) {
+    const json &sigma = table.at("relative_sigma"), &luminance = table.at("luminance_cd_m2");
+    for (std::size_t i = 0; i < sigma.size() && i < luminance.size(); i += 4) {
+      if (!sigma[i].is_number() || !(luminance[i].get<double>() > 0)) continue;
+      const double width = std::min(100 * t95 * sigma[i].get<double>(), 1000.0);
+      low.emplace_back(luminance[i].get<double>(), -width);
+      high.emplace_back(luminance[i].get<double>(), width);
+    }
+    plot.band(low, high, "band");
+  }
+  plot.line({{range.low, 0}, {range.high, 0}}, "zero");
+  for (const char* list : {"fit", "check"})
+    for (const json& patch : fit.value(list, json::array())) {
+      const double l = value_or(patch, "luminance_cd_m2", 0),
+                   error = 100 * value_or(patch, "relative_error", NAN);
+      if (const auto interval = patch.find("interval_95_cd_m2");
+          l > 0 && interval != patch.end() && (*interval)[0].is_number() && (*interval)[1].is_number())
+        plot.bar_y(l, 100 * ((*interval)[0].get<double>() / l - 1),
+                   100 * ((*interval)[1].get<double>() / l - 1), "error");
+      plot.dot(l, std::clamp(error, -most, most),
+               std::string(list) == "check" ? "check"
+               : patch.value("used", true)  ? "fit"
+                                            : "out",
+               patch.value("patch", std::string()) + ": " + formatted("%+.2f %%", error));
+    }
+  return plot.svg();
+}
+
+// "good to 4 % from 0.02 to 2e+05 cd/m²"
+std::string verdict_of(const json& file, const json& fit) {
+  const auto range = fit.find("usable_range");
+  if (range == fit.end() || !range->is_object()) return "";
+  const double low = range->at("luminance_cd_m2")[0].get<double>(),
+               high = range->at("luminance_cd_m2")[1].get<double>();
+  const double t95 = value_or(fit, "t95", 2);
+  double worst = 0;
+  const json& table = file.at("table");
+  for (std::size_t i = 0; table.contains("relative_sigma") && i < table.at("relative_sigma").size(); ++i) {
+    const double l = table.at("luminance_cd_m2")[i].get<double>();
+    const json& sigma = table.at("relative_sigma")[i];
+    if (l >= low && l <= high && sigma.is_number()) worst = std::max(worst, t95 * sigma.get<double>());
+  }
+  return formatted("%.1f %%", 100 * worst) + formatted(" from %.3g", low) + formatted(" to %.3g cd/m²", high);
+}
+
+std::string warning_of(const json& fit) {
+  std::string out;
+  for (const json& name : fit.value("rejected", json::array()))
+    out += "patch " + name.get<std::string>() + " contradicts the others and was left out. ";
+  int outside = 0;
+  for (const json& patch : fit.value("check", json::array())) outside += !patch.value("inside_95", true);
+  if (outside > 0) out += std::to_string(outside) + " check patch(es) lie outside their 95 % interval. ";
+  if (fit.value("check", json::array()).empty())
+    out += "no check patches: nothing independent confirms the response. ";
+  return out;
+}
+
+}  // namespace
+
+ReportSection response_section(const Response& response, const json& file) {
+  ReportSection out;
+  const json fit = file.value("fit", json::object());
+  const Range range = range_of(response, fit);
+  out.html = "<h2>Response</h2><p>" + std::string(model_name(response)) + " model, " +
+             std::to_string(response.bits) + " bits, at " +
+             formatted("%g µs", response.reference_exposure_us) + ".";
+  if (fit.contains("parameters") && fit.contains("covariance") && fit.contains("parameter_order")) {
+    const json& order = fit.at("parameter_order");
+    out.html += " Standard deviations:";
+    for (std::size_t i = 0; i < order.size() && i < fit.at("covariance").size(); ++i)
+      out.html += (i > 0 ? ", " : " ") + escaped(order[i].get<std::string>()) + " " +
+                  formatted("%.2g", std::sqrt(std::max(0.0, fit.at("covariance")[i][i].get<double>())));
+    out.html += ".";
+  }
+  out.html += "</p>" + curve_plot(response, fit, range);
+  if (!fit.empty() && file.contains("table"))
+    out.html +=
+        "<p>Error of the measured luminance at each patch; the band is where it lies with 95 % probability, "
+        "from "
+        "the patches alone. <i class=\"key fit\"></i>fitted <i class=\"key check\"></i>check <i class=\"key "
+        "out\"></i>left out</p>" +
+        error_plot(file, fit, range);
+  if (!fit.empty() && file.contains("table")) {
+    out.verdict = verdict_of(file, fit);
+    out.warning = warning_of(fit);
+    if (out.verdict.empty()) out.warning += "the response is nowhere known to 5 %. ";
+  } else if (file.contains("brackets")) {
+    out.verdict =
+        formatted("%.1f %% between exposures", 100 * value_or(file.at("brackets"), "median_error", 0));
+    if (!file.at("brackets").value("absolute", false))
+      out.warning = "luminance is relative: compare with a meter. ";
+  } else {
+    out.warning = "the response says nothing about its error. ";
+  }
+  return out;
+}
+
+}  // namespace lightwell::calibration

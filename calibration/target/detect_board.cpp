@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <limits>
+
+#include "calibration/target/board.h"
+#include "calibration/target/chessboard.h"
+#include "calibration/target/markers.h"
+
+namespace lightwell::calibration {
+namespace {
+
+// Distance of each corner to its nearest other.
+std::vector<double> nearest_px(const std::vector<cv::Point2f>& corners) {
+  std::vector<double> out(corners.size(), std::numeric_limits<double>::max());
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    for (std::size_t j = 0; j < corners.size(); ++j)
+      if (i != j) out[i] = std::min(out[i], cv::norm(corners[i] - corners[j]));
+  return out;
+}
+
+Detection chessboard(const cv::Mat& grey, const Board& board) {
+  Detection out;
+  std::vector<cv::Point2f> corners = find_chessboard(grey, board.columns, board.rows);
+  if (corners.empty()) {
+    // A third of the corners would show even where light or sharpness hides the rest.
+    out.of_no_board = 3 * count_saddles(grey) < static_cast<std::size_t>(board.columns * board.rows);
+    out.reason = out.of_no_board ? "shows no chessboard" : "no whole " + name(board) + " found";
+    return out;
+  }
+  refine_corners(grey, nearest_px(corners), corners);
+  out.board_is_larger = goes_on(grey, corners, board.columns, board.rows);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto column = static_cast<double>(i % static_cast<std::size_t>(board.columns));
+    const auto row = static_cast<double>(i / static_cast<std::size_t>(board.columns));
+    out.points.push_back({{board.pitch_mm * column, board.pitch_mm * row, 0}, {corners[i].x, corners[i].y}});
+  }
+  return out;
+}
+
+Detection markers(const cv::Mat& grey, const Board& board) {
+  Detection out;
+  std::vector<MarkerCorner> found =
+      board.kind == BoardKind::charuco ? find_charuco(grey, board) : find_aprilgrid(grey, board);
+  std::vector<cv::Point2f> corners;
+  for (const MarkerCorner& corner : found) corners.push_back(corner.pixel);
+  std::vector<double> room = nearest_px(corners);
+  // Beside a ChArUco corner stand the markers, half of what they leave of the pitch away.
+  const double free = board.kind == BoardKind::charuco ? (1 - board.marker_mm / board.pitch_mm) : 1;
+  for (double& px : room) px *= free;
+  refine_corners(grey, room, corners);
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    out.points.push_back({found[i].target_mm, {corners[i].x, corners[i].y}});
+  out.of_no_board = out.points.empty();
+  if (out.points.empty()) out.reason = "shows no marker of a " + name(board);
+  return out;
+}
+
+}  // namespace
+
+Detection detect_board(const GreyPicture& picture, const Board& board) {
+  const cv::Mat grey(picture.height, picture.width, CV_8U, const_cast<std::uint8_t*>(picture.pixels.data()));
+  return board.kind == BoardKind::chessboard ? chessboard(grey, board) : markers(grey, board);
+}
+
+}  // namespace lightwell::calibration

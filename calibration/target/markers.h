@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "calibration/target/board.h"
+
+namespace lightwell::calibration {
+
+struct MarkerCorner {
+  Vec3d target_mm;
+  cv::Point2f pixel;
+};
+
+// Corners of the checks between ArUco markers; whichever of ArUco's usual dictionaries the picture shows.
+std::vector<MarkerCorner> find_charuco(const cv::Mat& grey, const Board& board);
+
+// Corners of AprilTags 36h11, ids row by row from a corner of the grid, as Kalibr prints them (either row may come
+// first, black borders of one or two bits).
+std::vector<MarkerCorner> find_aprilgrid(const cv::Mat& grey, const Board& board);
+
+}  // namespace lightwell::calibration
