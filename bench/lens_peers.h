@@ -18,6 +18,8 @@ struct SolvedLens {
   std::string refused;  // what the solver said instead of a lens; empty: the rest is there
   std::function<Vec2d(const Vec3d&)> project;  // camera frame to pixel
   std::vector<calibration::TargetPose> poses;  // one a view
+  // Where a point of the nominal target is on the real one; empty: there.
+  std::function<Vec3d(const Vec3d&)> place;
 };
 
 // cv::fisheye::calibrate with what it offers: no guess, skew fixed. recompute_extrinsics: its flag of that name, off by

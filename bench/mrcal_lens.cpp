@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
 #include <dlfcn.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 
 extern "C" {  // its headers are for C
@@ -73,6 +76,30 @@ Vec3d vector(const mrcal_point3_t& p) {
   return {p.x, p.y, p.z};
 }
 
+// mrcal tells of each outlier on stderr.
+class QuietErrors {
+ public:
+  QuietErrors() : kept_(dup(STDERR_FILENO)) {
+    std::fflush(stderr);
+    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (nowhere >= 0) {
+      dup2(nowhere, STDERR_FILENO);
+      close(nowhere);
+    }
+  }
+  ~QuietErrors() {
+    std::fflush(stderr);
+    if (kept_ < 0) return;
+    dup2(kept_, STDERR_FILENO);
+    close(kept_);
+  }
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+
+ private:
+  int kept_;
+};
+
 // Every corner of every view's grid: pixel and weight, negative where the view does not show it.
 std::vector<mrcal_point3_t> observations(const calibration::TargetViews& views, const Grid& grid) {
   const auto a_view = static_cast<std::size_t>(grid.columns * grid.rows);
@@ -127,6 +154,7 @@ SolvedLens solve_mrcal(const calibration::TargetViews& views, const MrcalStart& 
   solve.do_apply_outlier_rejection = true;
   const mrcal_problem_constants_t constants{};
   mrcal_calobject_warp_t warp{};
+  const QuietErrors quiet;
   const mrcal_stats_t stats =
       mrcal.optimize(nullptr, 0, nullptr, 0, intrinsics->data(), nullptr, frames.data(), nullptr, &warp, 1, 0,
                      static_cast<int>(frames.size()), 0, 0, boards.data(), nullptr,
@@ -136,6 +164,12 @@ SolvedLens solve_mrcal(const calibration::TargetViews& views, const MrcalStart& 
     out.refused = "mrcal_optimize failed";
     return out;
   }
+  // Its board bends by x2 (1 − x²) + y2 (1 − y²), x and y from −1 to 1 over the board.
+  out.place = [warp, grid](const Vec3d& nominal) {
+    const double x = 2 * nominal.x() / (grid.pitch_mm * (grid.columns - 1)) - 1;
+    const double y = 2 * nominal.y() / (grid.pitch_mm * (grid.rows - 1)) - 1;
+    return Vec3d(nominal.x(), nominal.y(), nominal.z() + warp.x2 * (1 - x * x) + warp.y2 * (1 - y * y));
+  };
   for (const mrcal_pose_t& frame : frames) out.poses.push_back({vector(frame.r), vector(frame.t)});
   out.project = [intrinsics, lens_model](const Vec3d& direction) {
     const mrcal_point3_t p = point(direction);
