@@ -58,7 +58,8 @@ struct Suite {
 const std::vector<Suite>& suites();
 
 std::vector<Row> frame_suite(const Options& options);
-std::vector<Row> calibration_suite(const Options& options);
+std::vector<Row> lens_suite(const Options& options);
+std::vector<Row> response_suite(const Options& options);
 
 // CPU, compiler, flags, commit, date and all rows: schema "lightwell.bench/1".
 std::string to_json(const std::vector<std::pair<std::string, std::vector<Row>>>& results);

@@ -43,7 +43,8 @@ const std::vector<Suite>& suites() {
   static const std::vector<Suite> all = {
       {"frame", frame_suite},
       {"lights", lights_rows},
-      {"calibration", calibration_suite},
+      {"lens", lens_suite},
+      {"response", response_suite},
   };
   return all;
 }

@@ -7,6 +7,7 @@
 #include "bench/suite.h"
 #include "cli/command.h"
 #include "interface/atomic_file.h"
+#include "interface/option_range.h"
 
 namespace lightwell::cli {
 namespace {
@@ -59,7 +60,7 @@ Command add_bench(CLI::App& app) {
   command->add_option("--data", asked->options.data_folder,
                       "Folder of reference data (fisheye_cal/…): cases that need it run too");
   command->add_option("--seconds", asked->options.seconds_per_case, "Time for each case")
-      ->check(CLI::Range(0.0, 600.0))
+      ->check(numbers_from(0, 600, "0 to 600 seconds"))
       ->capture_default_str();
   command->footer("Example: lightwell bench --suite frame --json out.json --svg .");
   return {command, [asked] { return run(*asked); }};

@@ -87,7 +87,10 @@ Command add_calibrate_brackets(CLI::App& group) {
   command->add_option("--exposures", options->exposures, "Seconds, one a photograph; default: from EXIF")
       ->delimiter(',')
       ->type_name("S,S,...");
-  command->add_option("--solver", options->solver, "debevec (default) or robertson")->type_name("NAME");
+  command
+      ->add_option("--solver", options->solver,
+                   "debevec (default, smooths) or robertson (does not; give it uneven steps)")
+      ->type_name("NAME");
   command->add_option("--radiance", options->radiance, "The merged radiance, a quarter of the size")
       ->type_name("FILE.exr");
   command->add_flag("--json", options->json, "The report as JSON on stdout");

@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "daemon/capture/gvcp.h"
 #include "daemon/capture/inspect_camera.h"
+#include "interface/option_range.h"
 
 namespace lightwell::cli {
 namespace {
@@ -98,8 +99,8 @@ Command add_devices(CLI::App& app) {
       ->add_option("--interface", options->interfaces,
                    "Only on this network interface, for example lo; may be repeated")
       ->type_name("NAME");
-  command->add_option("--timeout", options->timeout_s, "Seconds to wait for answers")
-      ->check(CLI::Range(0.05, 60.0))
+  command->add_option("--timeout", options->timeout_s, "Seconds to wait for answers, 0.05 to 60")
+      ->check(numbers_from(0.05, 60, "0.05 to 60 seconds"))
       ->capture_default_str();
   command->add_flag("--json", options->json, "Machine-readable result on stdout");
   command->footer("Example: lightwell devices --interface eth0");

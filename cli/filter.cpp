@@ -46,9 +46,15 @@ Command add_filter(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("filter", "Design the temporal filter of the lights (equiripple low-pass)");
   command->footer("Example: lightwell filter --rate 60 --pass 12 --stop 20 --order 16 --json");
-  command->add_option("--rate", options->specification.rate_hz, "Frames a second, Hz")->required();
-  command->add_option("--pass", options->specification.pass_hz, "Changes up to here pass, Hz")->required();
-  command->add_option("--stop", options->specification.stop_hz, "Changes from here on are suppressed, Hz")
+  command->add_option("--rate", options->specification.rate_hz, "Frames a second, above 0 to 100000 Hz")
+      ->required();
+  command
+      ->add_option("--pass", options->specification.pass_hz,
+                   "Changes up to here pass, Hz, above 0 and below --stop")
+      ->required();
+  command
+      ->add_option("--stop", options->specification.stop_hz,
+                   "Changes from here on are suppressed, Hz, below half of --rate")
       ->required();
   command
       ->add_option("--order", options->specification.order,

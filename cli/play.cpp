@@ -9,6 +9,7 @@
 #include "daemon/configuration.h"
 #include "daemon/daemon.h"
 #include "interface/dds_domain.h"
+#include "interface/option_range.h"
 
 namespace lightwell::cli {
 namespace {
@@ -61,12 +62,12 @@ Command add_play(CLI::App& app) {
   command
       ->add_option("--speed", arguments->speed,
                    "1 as recorded, 0.5 half as fast, 0 as fast as it can, no frame skipped")
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(numbers_from(0, 1000, "0 to 1000"));
   command->add_flag("--loop", arguments->loop, "begin again at the end");
   command->add_option("--calibration", arguments->calibration,
                       "folder to use instead of the take's own calibration");
   command->add_option("--listen", arguments->listen, "ADDRESS:PORT of the page");
-  command->add_option("--domain", arguments->domain, "DDS domain")->check(CLI::Range(0, kMaxDdsDomain));
+  command->add_option("--domain", arguments->domain, "DDS domain")->check(whole_numbers(0, kMaxDdsDomain));
   command->footer("Example: lightwell play take.mkv --loop --speed 0.5");
   return {command, [arguments] { return run(*arguments); }};
 }

@@ -4,9 +4,11 @@
 
 #include <arpa/inet.h>
 #include <dds/dds.h>
+#include <ifaddrs.h>
 #include <net/if.h>
 
 #include <cstdlib>
+#include <cstring>
 #include <map>
 #include <mutex>
 
@@ -26,6 +28,24 @@ Registry& registry() {
 bool is_ipv4(const std::string& text) {
   in_addr address{};
   return ::inet_pton(AF_INET, text.c_str(), &address) == 1;
+}
+
+// Whether an interface of this machine has the address; 127.0.0.0/8 all belongs to lo but only 127.0.0.1 is listed,
+// and DDS goes by the list.
+bool is_listed(const std::string& ipv4) {
+  in_addr wanted{};
+  if (::inet_pton(AF_INET, ipv4.c_str(), &wanted) != 1) return false;
+  ifaddrs* list = nullptr;
+  if (::getifaddrs(&list) != 0) return true;  // unknown: the participant will tell
+  bool found = false;
+  for (const ifaddrs* entry = list; entry != nullptr && !found; entry = entry->ifa_next) {
+    if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET) continue;
+    sockaddr_in address{};
+    std::memcpy(&address, entry->ifa_addr, sizeof address);
+    found = address.sin_addr.s_addr == wanted.s_addr;
+  }
+  ::freeifaddrs(list);
+  return found;
 }
 
 // The interface is one of this machine, and Linux allows neither '"' nor '<' from a sane tool, but names are free:
@@ -65,6 +85,9 @@ Status check_dds_options(const DdsOptions& options) {
   if (!is_ipv4(options.interface) && ::if_nametoindex(options.interface.c_str()) == 0)
     return Error{ErrorKind::usage, "DDS interface '" + options.interface +
                                        "' does not exist on this machine (`ip link` lists those that do)"};
+  if (is_ipv4(options.interface) && !is_listed(options.interface))
+    return Error{ErrorKind::usage, "DDS interface '" + options.interface +
+                                       "' is no address of this machine (`ip address` lists those that are)"};
   return {};
 }
 

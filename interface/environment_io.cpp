@@ -64,7 +64,7 @@ Result<EnvironmentImage> environment_from_bytes(std::string_view bytes, const st
     bool converted = false;
     Result<LatLongImage> image = is_exr(bytes) ? read_exr(bytes, name, kPixelLimit, &converted)
                                  : is_radiance_hdr(bytes)
-                                     ? read_radiance_hdr(bytes, name, kPixelLimit)
+                                     ? read_radiance_hdr(bytes, name, kPixelLimit, &converted)
                                      : bad(name, "is neither an OpenEXR nor a Radiance HDR image");
     if (!image) return image.error();
     EnvironmentImage environment = repair(std::move(image).value());

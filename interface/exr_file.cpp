@@ -214,17 +214,6 @@ Chromaticities chromaticities_of(const Imf::Header& header) {
   return {xy(c.red), xy(c.green), xy(c.blue), xy(c.white)};
 }
 
-// A value that is not finite stays in its own channel, for the caller to judge.
-void convert(std::vector<Rgb>& pixels, const Eigen::Matrix3d& matrix) {
-  constexpr double kLargest = std::numeric_limits<float>::max();
-  for (Rgb& pixel : pixels) {
-    const Rgb known = pixel.isFinite().select(pixel, Rgb::Zero());
-    const Eigen::Vector3d colour = matrix * known.matrix().cast<double>();
-    for (int c = 0; c < 3; ++c)
-      if (std::isfinite(pixel[c])) pixel[c] = static_cast<float>(std::clamp(colour[c], -kLargest, kLargest));
-  }
-}
-
 // The display window may be larger than the data window, or not cover it.
 LatLongImage place(std::vector<Rgb> pixels, const Window& data, const Window& display) {
   LatLongImage image{static_cast<int>(display.width), static_cast<int>(display.height), {}};
@@ -272,7 +261,7 @@ Result<LatLongImage> read_exr(std::string_view bytes, const std::string& name, s
       return bad(name, "attribute chromaticities is no colour space: primaries on one line or no white");
     Imf::InputPart part(file, 0);
     std::vector<Rgb> pixels = read_data_window(part, *channels);
-    if (other) convert(pixels, *to_rec709);
+    if (other) convert_colours(pixels, *to_rec709);
     if (converted != nullptr) *converted = other;
     return place(std::move(pixels), window_of(header.dataWindow()), window_of(header.displayWindow()));
   } catch (const std::bad_alloc&) {

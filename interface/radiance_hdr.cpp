@@ -10,6 +10,8 @@
 #include <optional>
 #include <vector>
 
+#include "lighting/chromaticities.h"
+
 namespace lightwell {
 namespace {
 
@@ -109,11 +111,12 @@ struct Header {
   int width = 0;
   int height = 0;
   Eigen::Array3d multiplier = Eigen::Array3d::Ones();  // of R, G, B since the radiance was measured
+  std::optional<Eigen::Matrix3d> to_rec709;            // where the colours are of another space
 };
 
-// Numbers with spaces around them, all above 0; none: other text.
+// Numbers with spaces around them; none: other text.
 template <std::size_t count>
-std::optional<std::array<double, count>> positive_numbers(std::string_view text) {
+std::optional<std::array<double, count>> finite_numbers(std::string_view text) {
   const auto skip_spaces = [&] {
     text.remove_prefix(std::min(text.find_first_not_of(" \t\r"), text.size()));
   };
@@ -122,11 +125,32 @@ std::optional<std::array<double, count>> positive_numbers(std::string_view text)
     skip_spaces();
     if (text.starts_with('+')) text.remove_prefix(1);
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || !(number > 0) || !std::isfinite(number)) return std::nullopt;
+    if (error != std::errc() || !std::isfinite(number)) return std::nullopt;
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
   }
   skip_spaces();
   return text.empty() ? std::optional(numbers) : std::nullopt;
+}
+
+template <std::size_t count>
+std::optional<std::array<double, count>> positive_numbers(std::string_view text) {
+  const auto numbers = finite_numbers<count>(text);
+  return numbers && std::ranges::all_of(*numbers, [](double number) { return number > 0; }) ? numbers
+                                                                                            : std::nullopt;
+}
+
+// PRIMARIES= x y of red, green, blue and white, from the last such line. False where it is none or no colour space.
+bool take_primaries(std::optional<Eigen::Matrix3d>& to_rec709, std::string_view line) {
+  constexpr std::string_view kPrimaries = "PRIMARIES=";
+  if (!line.starts_with(kPrimaries)) return true;
+  const auto xy = finite_numbers<8>(line.substr(kPrimaries.size()));
+  if (!xy) return false;
+  const auto& n = *xy;
+  const Chromaticities space{{n[0], n[1]}, {n[2], n[3]}, {n[4], n[5]}, {n[6], n[7]}};
+  to_rec709 = rec709_from(space);
+  if (!to_rec709) return false;
+  if (is_rec709(space)) to_rec709.reset();
+  return true;
 }
 
 // False where the line is an EXPOSURE or COLORCORR without its numbers. Each multiplies those before it. source:
@@ -160,6 +184,9 @@ Result<Header> read_header(Reader& reader, const std::string& name) {
     if (!multiply(header.multiplier, *line))
       return bad("Radiance HDR " + std::string(line->substr(0, 100)) + ", expected " +
                  (line->starts_with("E") ? "a number" : "three numbers") + " above 0");
+    if (!take_primaries(header.to_rec709, *line))
+      return bad("Radiance HDR " + std::string(line->substr(0, 100)) +
+                 ", expected x and y of red, green, blue and white of a colour space");
   }
   if (!(header.multiplier > 0).all() || !header.multiplier.isFinite().all())
     return bad("Radiance HDR EXPOSURE and COLORCORR lines multiply to no number above 0");
@@ -178,7 +205,7 @@ bool is_radiance_hdr(std::string_view bytes) {
 }
 
 Result<LatLongImage> read_radiance_hdr(std::string_view bytes, const std::string& name,
-                                       std::int64_t pixel_limit) {
+                                       std::int64_t pixel_limit, bool* converted) {
   Reader reader(bytes);
   const auto header = read_header(reader, name);
   if (!header) return header.error();
@@ -196,6 +223,8 @@ Result<LatLongImage> read_radiance_hdr(std::string_view bytes, const std::string
                                              std::to_string(y) + " of " + std::to_string(header->height)};
     for (const Rgbe& pixel : row) image.pixels.push_back(radiance(pixel) * scale);
   }
+  if (header->to_rec709) convert_colours(image.pixels, *header->to_rec709);
+  if (converted != nullptr) *converted = header->to_rec709.has_value();
   return image;
 }
 

@@ -3,7 +3,9 @@
 #include "lighting/chromaticities.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lightwell {
 namespace {
@@ -55,6 +57,16 @@ std::optional<Eigen::Matrix3d> rec709_from(const Chromaticities& space) {
       !(std::abs(matrix.determinant()) > kSmallest))
     return std::nullopt;
   return matrix;
+}
+
+void convert_colours(std::span<Rgb> pixels, const Eigen::Matrix3d& matrix) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  for (Rgb& pixel : pixels) {
+    const Rgb known = pixel.isFinite().select(pixel, Rgb::Zero());
+    const Eigen::Vector3d colour = matrix * known.matrix().cast<double>();
+    for (int c = 0; c < 3; ++c)
+      if (std::isfinite(pixel[c])) pixel[c] = static_cast<float>(std::clamp(colour[c], -kLargest, kLargest));
+  }
 }
 
 }  // namespace lightwell

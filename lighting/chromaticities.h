@@ -4,6 +4,9 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
+
+#include "lighting/vector.h"
 
 namespace lightwell {
 
@@ -22,5 +25,9 @@ bool is_rec709(const Chromaticities& space);
 // Bradford transform (ICC.1:2010, annex E), to Rec. 709. White stays white: (1, 1, 1) to (1, 1, 1).
 // none: not finite, a white without luminance, or primaries on one line
 std::optional<Eigen::Matrix3d> rec709_from(const Chromaticities& space);
+
+// colour = matrix · colour of every pixel. A value that is not finite stays in its own channel, for the caller to judge,
+// and adds nothing to the others; results beyond float's range are clamped to it.
+void convert_colours(std::span<Rgb> pixels, const Eigen::Matrix3d& matrix);
 
 }  // namespace lightwell

@@ -3,12 +3,13 @@
 #include "render/options.h"
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
 #include "interface/dds_domain.h"
+#include "interface/option_range.h"
 #include "interface/printable.h"
+#include "interface/same_file.h"
 
 namespace lightwell::render {
 namespace {
@@ -57,7 +58,7 @@ Parsed parse_options(int argc, const char* const* argv) {
   app.add_option("--scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
   auto* live = app.add_flag("--live", options.live, "light from a running daemon, over DDS");
   app.add_option("--domain", options.domain, "DDS domain of --live")
-      ->check(CLI::Range(0, kMaxDdsDomain))
+      ->check(whole_numbers(0, kMaxDdsDomain))
       ->needs(live);
   app.add_option("--interface", options.interface, "network interface of --live")
       ->capture_default_str()
@@ -68,7 +69,7 @@ Parsed parse_options(int argc, const char* const* argv) {
                           ->excludes(live)
                           ->excludes("--light-set");
   app.add_option("--lights", options.lights, "lights to make of the environment")
-      ->check(CLI::Range(1, kMostLights))
+      ->check(whole_numbers(1, kMostLights))
       ->capture_default_str()
       ->needs(environment);
   app.add_option("--method", method, "how to make them: " + method_names())
@@ -81,19 +82,19 @@ Parsed parse_options(int argc, const char* const* argv) {
   app.add_flag("--sphere", sphere, "of all of it")->needs(environment)->excludes("--hemisphere");
   app.add_option("--spin", options.spin_deg,
                  "turns the environment about +Y by so many degrees more every frame")
-      ->check(CLI::Range(-360.0, 360.0))
+      ->check(numbers_from(-360, 360, "-360 to 360 degrees"))
       ->needs(environment);
   app.add_option("--shadow-maps", options.shadow_maps,
                  "most lights to render, each with its map (default: all; live 72)")
-      ->check(CLI::Range(1, 100000));
+      ->check(whole_numbers(1, 100000));
   app.add_option("--shadow-size", options.shadow_size, "texels a side of a shadow map")
-      ->check(CLI::Range(16, 4096))
+      ->check(whole_numbers(16, 4096))
       ->capture_default_str();
   app.add_option("--size", size, "picture, WxH")->capture_default_str();
   app.add_option("--camera", options.camera,
                  "camera of the scene, by its name or its node's (default: the first)");
   app.add_option("--samples", options.samples, "samples a pixel; 4 and more antialias")
-      ->check(CLI::Range(1, 1024))
+      ->check(whole_numbers(1, 1024))
       ->capture_default_str();
   app.add_option("--background", background,
                  "behind the scene: none (black, alpha 0) or the measured environment")
@@ -104,8 +105,9 @@ Parsed parse_options(int argc, const char* const* argv) {
       ->capture_default_str();
   app.add_flag("--headless", options.headless, "no window");
   app.add_option("--frames", options.frames, "end after this many frames (off-screen default: 1, live: none)")
-      ->check(CLI::Range(1, 1000000000));
-  app.add_option("--seconds", options.seconds, "end after this time")->check(CLI::Range(0.0, 1e9));
+      ->check(whole_numbers(1, 1000000000));
+  app.add_option("--seconds", options.seconds, "end after this time")
+      ->check(numbers_from(0, 1e9, "0 to 1e9 seconds"));
   app.add_option("--out", outputs, "pictures, NAME.exr, NAME.png or NAME_%04d.exr; may be given again");
   app.add_option("--stats", options.stats, "times and counts of the run, as JSON");
   try {
@@ -114,10 +116,6 @@ Parsed parse_options(int argc, const char* const* argv) {
     if (error.get_exit_code() == 0) return {std::nullopt, app.exit(error)};
     return {std::nullopt, complain(error.what())};
   }
-  if (std::isnan(options.spin_deg))  // no bound of a range refuses it
-    return {std::nullopt, complain("--spin nan: must be -360 to 360 degrees")};
-  if (options.seconds && std::isnan(*options.seconds))
-    return {std::nullopt, complain("--seconds nan: must be 0 to 1e9")};
   if (!options.live && options.light_set.empty() && options.environment.empty())
     return {std::nullopt,
             complain("one of --live, --environment and --light-set must say where the light comes from")};
@@ -133,6 +131,12 @@ Parsed parse_options(int argc, const char* const* argv) {
     if (!name) return {std::nullopt, complain(name.error().message)};
     options.outputs.push_back(*name);
   }
+  outputs.push_back(options.stats.string());
+  for (const std::string& output : outputs)
+    if (const Status other =
+            check_output_is_no_input(output, {options.scene, options.environment, options.light_set});
+        !other)
+      return {std::nullopt, complain(other.error().message)};
   options.background_environment = background == "environment";
   if (options.background_environment && !options.light_set.empty())
     return {std::nullopt,

@@ -74,11 +74,30 @@ void make_increasing(std::vector<double>& ln) {
     }
 }
 
+// Straight lines across what is not finite, the nearest value at the ends. False where nothing is finite.
+bool fill_gaps(std::vector<double>& values) {
+  std::optional<std::size_t> before;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) continue;
+    for (std::size_t k = before ? *before + 1 : 0; k < i; ++k)
+      values[k] = before ? std::lerp(values[*before], values[i],
+                                     static_cast<double>(k - *before) / static_cast<double>(i - *before))
+                         : values[i];
+    before = i;
+  }
+  if (!before) return false;
+  std::fill(values.begin() + static_cast<std::ptrdiff_t>(*before), values.end(), values[*before]);
+  return true;
+}
+
 // The exposure of every code of one channel, from the photographs `kept` of those compared.
 std::vector<double> solve_channel(const std::vector<const Photograph*>& photos, const Comparison& comparison,
                                   const std::vector<std::size_t>& kept, BracketSolver solver) {
   constexpr std::size_t kSpots = 256, kFirst = 12, kLast = 243;
-  const std::size_t levels = std::max<std::size_t>(kSpots / kept.size(), 2);
+  // Debevec's system grows with the spots; Robertson's curve has gaps at the codes that no spot has.
+  const std::size_t levels = solver == BracketSolver::robertson
+                                 ? kLast - kFirst + 1
+                                 : std::max<std::size_t>(kSpots / kept.size(), 2);
   std::vector<std::vector<int>> spots;  // a code for each kept photograph
   for (const std::size_t a : kept)
     for (std::size_t k = 0; k < levels; ++k) {
@@ -88,13 +107,16 @@ std::vector<double> solve_channel(const std::vector<const Photograph*>& photos, 
       for (const std::size_t b : kept) spots.back().push_back(row[b]);
     }
   if (spots.size() < 32) return {};
-  // The solver takes its samples from pictures: one row of spots.
+  // The solver takes its samples from pictures: one row of spots. OpenCV 4.6's Robertson writes beyond its arrays for
+  // any other than three channels, so it gets three that are equal.
+  const int channels = solver == BracketSolver::robertson ? 3 : 1;
   std::vector<cv::Mat> pictures;
   std::vector<float> times;
   for (std::size_t k = 0; k < kept.size(); ++k) {
-    cv::Mat picture(1, static_cast<int>(spots.size()), CV_8UC1);
+    cv::Mat picture(1, static_cast<int>(spots.size()), CV_8UC(channels));
     for (std::size_t i = 0; i < spots.size(); ++i)
-      picture.at<unsigned char>(0, static_cast<int>(i)) = static_cast<unsigned char>(spots[i][k]);
+      std::fill_n(picture.ptr() + i * static_cast<std::size_t>(channels), channels,
+                  static_cast<unsigned char>(spots[i][k]));
     pictures.push_back(picture);
     times.push_back(static_cast<float>(photos[kept[k]]->exposure_s));
   }
@@ -102,10 +124,10 @@ std::vector<double> solve_channel(const std::vector<const Photograph*>& photos, 
   if (solver == BracketSolver::debevec)
     cv::createCalibrateDebevec(static_cast<int>(spots.size()), 20.0F, false)->process(pictures, curve, times);
   else
-    cv::createCalibrateRobertson(60, 1e-3F)->process(pictures, curve, times);
+    cv::createCalibrateRobertson(1000, 1e-4F)->process(pictures, curve, times);
   std::vector<double> ln, out;
-  for (int z = 0; z < 256; ++z)
-    ln.push_back(std::log(std::max(static_cast<double>(curve.at<float>(z)), 1e-12)));
+  for (int z = 0; z < 256; ++z) ln.push_back(std::log(static_cast<double>(*curve.ptr<float>(z))));
+  if (!fill_gaps(ln)) return {};
   make_increasing(ln);
   for (const double v : ln) out.push_back(std::exp(v - ln[kGrey]));
   return out;

@@ -49,7 +49,8 @@ struct BracketFit {
 // OpenCV's Debevec–Malik or Robertson solver, given not single pixels but medians: what the pixels of one code in one
 // photograph have in the others. The curve is made to increase (pooling adjacent violators). The reported error is that
 // of exposures which were kept out of a fit and foretold by it; the response itself is of all. With more than some two
-// stops between neighbours the pictures overlap too little to tell the curve.
+// stops between neighbours the pictures overlap too little to tell the curve. Robertson's does not smooth: with even
+// steps it keeps, of its straight start, what repeats from step to step.
 // bad_input: fewer than 3 photographs or exposures, different sizes, codes that do not follow the exposures.
 Result<BracketFit> fit_brackets(std::vector<Photograph> photographs, BracketSolver solver);
 

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <ctime>
 #include <exception>
@@ -17,6 +18,7 @@
 #include "daemon/simulator/probe_setup.h"
 #include "daemon/simulator/truth_file.h"
 #include "interface/calibration_io.h"
+#include "interface/option_range.h"
 #include "interface/printable.h"
 
 // lightwell-camera: a GigE Vision camera that looks at known light.
@@ -67,7 +69,9 @@ void declare(CLI::App& app, CommandLine& c) {
       ->capture_default_str();
   app.add_option("--loss", c.camera.loss, "Part of the packets that is not sent, 0 to 1")
       ->capture_default_str();
-  app.add_option("--seed", c.probe.seed, "Of fixed pattern, noise and loss")->capture_default_str();
+  app.add_option("--seed", c.probe.seed, "Of fixed pattern, noise and loss")
+      ->check(whole_numbers(0, UINT32_MAX))
+      ->capture_default_str();
   app.add_option("--truth", c.truth, "File for what every frame shows, a JSON line a frame");
   app.add_option("--write-calibration", c.calibration_folder,
                  "Folder for the camera's exact response.json, lens.json and flat.json");

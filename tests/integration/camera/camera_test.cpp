@@ -309,6 +309,7 @@ TEST(LightwellCamera, WrongUsageAndBadInputSayWhatInOneLine) {
       {{"--scenario", "night"}, 2, "allowed day"},
       {{"--pixel-format", "RGB8"}, 2, "Mono12p"},
       {{"--loss", "2"}, 2, "--loss"},
+      {{"--seed", "-1"}, 2, "--seed: value '-1', allowed whole numbers from 0 to 4294967295"},
       {{"--noise", "nan"}, 2, "noise"},
       {{"--nonsense"}, 2, "--nonsense"},
       {{"--address", "camera.local"}, 2, "IPv4"},

@@ -185,5 +185,11 @@ TEST_F(Command, HelpEndsWell) {
   EXPECT_EQ(program.wait(), 0);
 }
 
+TEST_F(Command, DoesNotWriteOverWhatItReads) {
+  const std::string before = read_text_file(lights_).value();
+  expect_refused(arguments({"--stats", lights_}), 2, "is also the input");
+  EXPECT_EQ(read_text_file(lights_).value(), before);
+}
+
 }  // namespace
 }  // namespace lightwell

@@ -259,6 +259,8 @@ TEST(DdsDomain, WrongOptionsAreNamed) {
   EXPECT_THAT(message({.domain = kMaxDdsDomain + 1, .interface = "lo"}), testing::HasSubstr("233"));
   EXPECT_THAT(message({.domain = -1, .interface = "lo"}), testing::HasSubstr("-1"));
   EXPECT_THAT(message({.domain = 0, .interface = "nosuch0"}), testing::HasSubstr("nosuch0"));
+  // TEST-NET-2 (RFC 5737): no machine has it.
+  EXPECT_THAT(message({.domain = 0, .interface = "198.51.100.7"}), testing::HasSubstr("198.51.100.7"));
   const auto open = domain();
   DdsOptions other = own_domain();
   other.interface = "127.0.0.1";

@@ -175,6 +175,33 @@ TEST(RadianceHdr, AnExposureThatIsNoMultiplierIsBadInput) {
              "EXPOSURE");
 }
 
+// Radiance's own default primaries have an equal-energy white; white stays white, and pure red of a wider space is
+// redder than Rec. 709 can say. The matrix is tested beside it (chromaticities_test.cpp); here that it is applied.
+TEST(RadianceHdr, OtherPrimariesAreConvertedAndRec709sAreNot) {
+  const auto read = [](const std::string& line, const std::string& pixel) {
+    return environment_from_bytes("#?RADIANCE\n" + line + "\n\n-Y 1 +X 1\n" + pixel, "f.hdr");
+  };
+  const std::string white = "\x80\x80\x80\x81", red = std::string("\x80\x00\x00\x81", 4);
+  const std::string kRec709 = "PRIMARIES= .640 .330 .300 .600 .150 .060 .3127 .3290";
+  const std::string kRec2020 = "PRIMARIES=.708 .292 .170 .797 .131 .046 .3127 .3290";
+  const auto same = read(kRec709, red);
+  ASSERT_TRUE(same.ok()) << same.error().message;
+  EXPECT_FALSE(same->converted);
+  EXPECT_TRUE((same->image.at(0, 0) == Rgb(1, 0, 0)).all());
+  for (const std::string& line : {kRec2020, std::string("PRIMARIES=.64 .33 .29 .60 .15 .06 .333 .333")}) {
+    const auto still = read(line, white);
+    ASSERT_TRUE(still.ok()) << still.error().message;
+    EXPECT_TRUE(still->converted) << line;
+    EXPECT_TRUE(((still->image.at(0, 0) - 1).abs() < 1e-6f).all()) << line;
+  }
+  const auto redder = read(kRec2020, red);
+  ASSERT_TRUE(redder.ok()) << redder.error().message;
+  EXPECT_NEAR(redder->image.at(0, 0)[0], 1.6605, 1e-3);  // ITU-R BT.2087, table 2's inverse
+  for (const char* line : {"PRIMARIES=1 2 3", "PRIMARIES=", "PRIMARIES=.64 .33 .64 .33 .64 .33 .33 .33",
+                           "PRIMARIES=nan .33 .29 .60 .15 .06 .333 .333", "PRIMARIES=.6 .3 .3 .6 .1 .1 .3 0"})
+    expect_bad(read(line, white), "PRIMARIES");
+}
+
 TEST(RadianceHdr, DamageIsBadInputWithOneLine) {
   const std::string pixel = "\x80\x40\x20\x81";
   expect_bad(environment_from_bytes(hdr("-Y 1 +X 3", pixel + pixel), "f.hdr"), "row 0");

@@ -242,7 +242,7 @@ std::optional<Problem> ov_plane(const std::filesystem::path& data) {
 
 }  // namespace
 
-std::vector<Row> calibration_suite(const Options& options) {
+std::vector<Row> lens_suite(const Options& options) {
   const std::string wide = "LENSMODEL_SPLINED_STEREOGRAPHIC_order=3_Nx=16_Ny=14_fov_x_deg=200";
   std::vector<Problem> problems = {synthetic(120, 0, "LENSMODEL_OPENCV8"), synthetic(180, 0, wide),
                                    synthetic(180, 0.05, wide)};
