@@ -8,10 +8,10 @@
 #include <string>
 
 #include "calibration/photometric/illuminance_check.h"
+#include "calibration/photometric/take_frames.h"
 #include "cli/command.h"
 #include "interface/calibration_io.h"
 #include "interface/environment_io.h"
-#include "interface/recording.h"
 
 namespace lightwell::cli {
 namespace {
@@ -25,9 +25,9 @@ struct Options {
 
 Result<Calibration> calibration_for(const Options& o) {
   if (!o.calibration.empty()) return read_calibration(o.calibration);
-  const auto reader = RecordingReader::open(o.recording);
-  if (!reader) return reader.error();
-  const std::string& text = (*reader)->header().calibration_json;
+  const auto take = calibration::TakeFrames::open(o.recording);
+  if (!take) return take.error();
+  const std::string& text = take->header().calibration_json;
   if (text.empty()) return usage("--calibration is missing, and " + o.recording + " carries none");
   return calibration_from_json(text, o.recording + " (attached calibration.json)");
 }

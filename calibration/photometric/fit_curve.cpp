@@ -46,6 +46,38 @@ LinearFit solve(const Points& points, Eigen::Index columns, Basis basis) {
   return fit;
 }
 
+// code ≈ beta[0] + beta[1] f(L), weighted: about the means, so that no digits are lost; allocates nothing, for the search
+// asks for it two hundred times a fit.
+struct StraightFit {
+  double beta[2] = {0, 0};
+  double chi2 = kNever;
+};
+template <class Function>
+StraightFit solve_straight(const Points& points, Function f) {
+  const auto weight = [](const CurvePoint& p) { return 1 / (p.sigma * p.sigma); };
+  double sum = 0, mean_x = 0, mean_y = 0;
+  for (const CurvePoint& p : points) {
+    sum += weight(p);
+    mean_x += weight(p) / sum * (f(p.luminance_cd_m2) - mean_x);
+    mean_y += weight(p) / sum * (p.code - mean_y);
+  }
+  double xx = 0, xy = 0;
+  for (const CurvePoint& p : points) {
+    const double x = f(p.luminance_cd_m2) - mean_x;
+    xx += weight(p) * x * x;
+    xy += weight(p) * x * (p.code - mean_y);
+  }
+  StraightFit fit;
+  fit.beta[1] = xx > 0 ? xy / xx : 0;
+  fit.beta[0] = mean_y - fit.beta[1] * mean_x;
+  fit.chi2 = 0;
+  for (const CurvePoint& p : points) {
+    const double r = p.code - mean_y - fit.beta[1] * (f(p.luminance_cd_m2) - mean_x);
+    fit.chi2 += weight(p) * r * r;
+  }
+  return fit;
+}
+
 // The lowest of value over ln x in [low, high]: the best of a grid, then golden section around it.
 template <class Value>
 double search(double low, double high, int steps, Value value) {
@@ -79,23 +111,23 @@ double darkest(const Points& points) {
 }
 
 std::optional<CurveFit> fit_linear(const Points& points) {
-  const LinearFit fit = solve(points, 2, [](double l, auto row) { row << 1, l; });
+  const StraightFit fit = solve_straight(points, [](double l) { return l; });
   if (!(fit.beta[1] > 0)) return std::nullopt;
   return CurveFit{LinearResponse{fit.beta[0], fit.beta[1]}, fit.chi2};
 }
 
 std::optional<CurveFit> fit_log(const Points& points) {
   const auto given = [&](double c) {
-    return solve(points, 2, [c](double l, auto row) { row << 1, std::log(l + c); });
+    return solve_straight(points, [c](double l) { return std::log(l + c); });
   };
   // From a toe that no patch feels to one that all do; an eighth of a decade a step.
   const double least = darkest(points);
   const double low = std::log(least * 1e-4), high = std::log(points.back().luminance_cd_m2 * 10);
   const double ln_c = search(low, high, 120, [&](double x) { return given(std::exp(x)).chi2; });
   double c = std::exp(ln_c);
-  LinearFit fit = given(c);
+  StraightFit fit = given(c);
   if (points.front().luminance_cd_m2 > 0) {  // without a toe, a dark patch would have no code
-    const LinearFit none = given(0);
+    const StraightFit none = given(0);
     if (none.chi2 <= fit.chi2) fit = none, c = 0;
   }
   if (!(fit.beta[1] > 0)) return std::nullopt;
@@ -105,13 +137,13 @@ std::optional<CurveFit> fit_log(const Points& points) {
 std::optional<CurveFit> fit_lin_log(const Points& points) {
   const auto given = [&](double knee) {
     const LinLogResponse unit{0, 1, knee};
-    return solve(points, 2, [&](double l, auto row) { row << 1, unit.code(l); });
+    return solve_straight(points, [&](double l) { return unit.code(l); });
   };
   const double low = std::log(darkest(points)), high = std::log(points.back().luminance_cd_m2);
   const double ln_knee = search(low, high, 120, [&](double x) { return given(std::exp(x)).chi2; });
   // At either end it is another model: a logarithm, or a straight line.
   if (ln_knee - low < 1e-6 || high - ln_knee < 1e-6) return std::nullopt;
-  const LinearFit fit = given(std::exp(ln_knee));
+  const StraightFit fit = given(std::exp(ln_knee));
   if (!(fit.beta[1] > 0)) return std::nullopt;
   return CurveFit{LinLogResponse{fit.beta[0], fit.beta[1], std::exp(ln_knee)}, fit.chi2};
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "interface/recording.h"
+#include "calibration/photometric/take_frames.h"
 #include "lighting/direction.h"
 #include "lighting/radiometer.h"
 
@@ -43,10 +43,9 @@ double illuminance_lux(const LatLongImage& image, const Meter& meter) {
 Result<RecordedIlluminance> recorded_illuminance(const std::filesystem::path& recording,
                                                  const Calibration& calibration, const Meter& meter) {
   const auto in_file = [&](const Error& e) { return Error{e.kind, recording.string() + ": " + e.message}; };
-  const auto opened = RecordingReader::open(recording);
-  if (!opened) return opened.error();
-  RecordingReader& reader = **opened;
-  auto radiometer = Radiometer::create(calibration, reader.header().format, {});
+  auto take = TakeFrames::open(recording);
+  if (!take) return take.error();
+  auto radiometer = Radiometer::create(calibration, take->format(), {});
   if (!radiometer) return in_file(radiometer.error());
   PolarMap map = radiometer->make_map();
   std::vector<double> weight;  // of each bin: solid angle × cosine
@@ -61,14 +60,10 @@ Result<RecordedIlluminance> recorded_illuminance(const std::filesystem::path& re
     }
   RecordedIlluminance out;
   out.measured_part = std::min(1.0, whole / (meter.cosine ? kPi : 2 * kPi));
-  std::vector<std::byte> codes(reader.header().format.bytes());
   double square = 0;
-  for (;;) {
-    const auto frame = reader.read(codes);
-    if (!frame) return frame.error();
-    if (!*frame) break;
-    if (!((*frame)->exposure_us > 0)) return in_file({ErrorKind::bad_input, "a frame has no exposure"});
-    radiometer->develop(codes, (*frame)->exposure_us, map);
+  const auto measure = [&](const RecordedFrame& frame, std::span<const std::byte> codes) -> Status {
+    if (!(frame.exposure_us > 0)) return Error{ErrorKind::bad_input, "a frame has no exposure"};
+    radiometer->develop(codes, frame.exposure_us, map);
     double lux = 0;
     for (std::size_t b = 0; b < weight.size(); ++b) {
       const auto at = [&](int channel) { return static_cast<double>(map.plane(channel)[b]); };
@@ -79,8 +74,9 @@ Result<RecordedIlluminance> recorded_illuminance(const std::filesystem::path& re
     out.lux += step / static_cast<double>(out.frames);
     square += step * (lux - out.lux);
     out.clipped = std::max(out.clipped, static_cast<std::uint64_t>(map.clipped_pixels));
-  }
-  if (out.frames == 0) return in_file({ErrorKind::bad_input, "holds no whole frame"});
+    return {};
+  };
+  if (const Status status = take->for_each(measure); !status) return status.error();
   if (out.frames > 1) out.sigma_lux = std::sqrt(square / static_cast<double>(out.frames - 1));
   return out;
 }

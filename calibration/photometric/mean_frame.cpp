@@ -2,62 +2,72 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibration/photometric/mean_frame.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
-
-#include "interface/recording.h"
-#include "lighting/radiometer/row_decoder.h"
 
 namespace lightwell::calibration {
 namespace {
 
-radiometer::Storage storage_of(PixelFormat format) {
-  const int bits = storage_bits(format);
-  return bits == 8    ? radiometer::Storage::u8
-         : bits == 12 ? radiometer::Storage::p12
-                      : radiometer::Storage::u16;
+bool same_exposure(double a, double b) {
+  return std::abs(a - b) <= kOneExposure * std::max(a, b);
+}
+
+MeanFrame empty_mean(const TakeFrames& take, double exposure_us) {
+  MeanFrame mean;
+  mean.format = take.format();
+  mean.exposure_us = exposure_us;
+  mean.code.assign(take.pixels(), 0);
+  mean.sigma.assign(take.pixels(), 0);
+  mean.temperature_c = 0;
+  return mean;
 }
 
 }  // namespace
 
-Result<MeanFrame> mean_frame(const std::filesystem::path& recording) {
-  const auto opened = RecordingReader::open(recording);
-  if (!opened) return opened.error();
-  RecordingReader& reader = **opened;
-  MeanFrame mean;
-  mean.format = reader.header().format;
-  const auto pixels =
-      static_cast<std::size_t>(mean.format.width) * static_cast<std::size_t>(mean.format.height);
-  mean.code.assign(pixels, 0);
-  mean.sigma.assign(pixels, 0);
-  std::vector<std::byte> codes(mean.format.bytes());
-  const radiometer::Storage storage = storage_of(mean.format.pixel_format);
-  double temperature = 0;
-  for (;;) {
-    const auto frame = reader.read(codes);
-    if (!frame) return frame.error();
-    if (!*frame) break;
-    if (mean.frames == 0) mean.exposure_us = (*frame)->exposure_us;
-    if (std::abs((*frame)->exposure_us - mean.exposure_us) > 1e-3 * mean.exposure_us)
-      return Error{ErrorKind::bad_input, recording.string() +
-                                             ": exposure_us = " + std::to_string((*frame)->exposure_us) +
-                                             " in frame " + std::to_string(mean.frames) + ": allowed " +
-                                             std::to_string(mean.exposure_us) + ", that of the first frame"};
-    temperature += static_cast<double>((*frame)->temperature_c);
-    ++mean.frames;
-    const auto n = static_cast<double>(mean.frames);
-    for (std::size_t i = 0; i < pixels; ++i) {  // Welford
-      const auto code = static_cast<double>(radiometer::code_at(codes.data(), storage, i));
-      const double step = code - mean.code[i];
-      mean.code[i] += step / n;
-      mean.sigma[i] += step * (code - mean.code[i]);
+Result<std::vector<MeanFrame>> mean_frames(TakeFrames& take) {
+  std::vector<MeanFrame> means;
+  const Status status = take.for_each([&](const RecordedFrame& frame, std::span<const std::byte> codes) {
+    auto mean = std::find_if(means.begin(), means.end(), [&](const MeanFrame& m) {
+      return same_exposure(m.exposure_us, frame.exposure_us);
+    });
+    if (mean == means.end()) {
+      if (means.size() == kMostExposures)
+        return Status(Error{ErrorKind::bad_input, "more than " + std::to_string(kMostExposures) +
+                                                      " different exposures: allowed that many"});
+      mean = means.insert(mean, empty_mean(take, frame.exposure_us));
     }
+    *mean->temperature_c += static_cast<double>(frame.temperature_c);
+    const auto n = static_cast<double>(++mean->frames);
+    for (std::size_t i = 0; i < take.pixels(); ++i) {  // Welford
+      const auto code = static_cast<double>(take.code(codes, i));
+      const double step = code - mean->code[i];
+      mean->code[i] += step / n;
+      mean->sigma[i] += step * (code - mean->code[i]);
+    }
+    return Status();
+  });
+  if (!status) return status.error();
+  for (MeanFrame& mean : means) {
+    const auto n = static_cast<double>(mean.frames);
+    for (double& s : mean.sigma) s = mean.frames > 1 ? std::sqrt(s / (n - 1)) : 0;
+    *mean.temperature_c /= n;
+    if (!std::isfinite(*mean.temperature_c)) mean.temperature_c.reset();
   }
-  if (mean.frames == 0) return Error{ErrorKind::bad_input, recording.string() + ": holds no whole frame"};
-  const auto n = static_cast<double>(mean.frames);
-  for (double& s : mean.sigma) s = mean.frames > 1 ? std::sqrt(s / (n - 1)) : 0;
-  if (std::isfinite(temperature)) mean.temperature_c = temperature / n;
-  return mean;
+  return means;
+}
+
+Result<MeanFrame> mean_frame(const std::filesystem::path& recording) {
+  auto take = TakeFrames::open(recording);
+  if (!take) return take.error();
+  auto means = mean_frames(*take);
+  if (!means) return means.error();
+  if (means->size() > 1)
+    return Error{ErrorKind::bad_input,
+                 recording.string() + ": exposure_us = " + std::to_string((*means)[1].exposure_us) +
+                     " in a later frame: allowed " + std::to_string((*means)[0].exposure_us) +
+                     ", that of the first frame"};
+  return std::move(means->front());
 }
 
 }  // namespace lightwell::calibration

@@ -7,12 +7,13 @@
 #include <optional>
 #include <vector>
 
+#include "calibration/photometric/take_frames.h"
 #include "lighting/frame_format.h"
 #include "lighting/result.h"
 
 namespace lightwell::calibration {
 
-// What the frames of a take have in common.
+// What frames of one exposure have in common.
 struct MeanFrame {
   FrameFormat format;
   std::vector<double> code;   // [height][width], mean over the frames
@@ -22,7 +23,13 @@ struct MeanFrame {
   std::optional<double> temperature_c;  // mean, where the camera has one
 };
 
-// bad_input: not a take, damaged, or frames of different exposure, which have no mean.
+inline constexpr std::size_t kMostExposures = 32;
+// Exposures that differ by less than this part are one.
+inline constexpr double kOneExposure = 1e-3;
+
+// One for each exposure, in order of appearance. bad_input: not a take, damaged, more than kMostExposures of them.
+Result<std::vector<MeanFrame>> mean_frames(TakeFrames& take);
+// bad_input, too: frames of different exposure, which have no mean.
 Result<MeanFrame> mean_frame(const std::filesystem::path& recording);
 
 // Colour of a pixel of an RGGB mosaic: 0 red, 1 green, 2 blue; 0 for every pixel of a monochrome format.

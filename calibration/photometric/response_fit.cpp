@@ -17,8 +17,6 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kPrior = 4;          // residuals that the stated noise counts for
 constexpr double kRejectedChi2 = 25;  // what a patch that is left out costs a curve: five standard deviations
-constexpr double kStrong =
-    10;  // difference of AICc that leaves the other no support (Burnham and Anderson 2002)
 constexpr std::size_t kSuspects = 4;  // patches tried without; the first order misses where the curve bends
 constexpr double kFalseRejection = 0.01;  // chance to reject any patch of a good set
 
@@ -55,7 +53,8 @@ class Fitter {
 
   [[nodiscard]] double sigma(const Patch& patch, double dcode_dluminance) const {
     const double code = patch.code_sigma > 0 ? patch.code_sigma : options_.code_sigma;
-    return std::hypot(code, dcode_dluminance * patch.luminance_cd_m2 * options_.luminance_error);
+    const double relative = patch.luminance_error > 0 ? patch.luminance_error : options_.luminance_error;
+    return std::hypot(code, dcode_dluminance * patch.luminance_cd_m2 * relative);
   }
 
   [[nodiscard]] Trial attempt(Curve curve, int segments) const {
@@ -190,17 +189,50 @@ const Trial* choose(const std::vector<Trial>& trials) {
   for (const Trial& t : trials)
     if (t.score.refused.empty()) least = std::min(least, t.score.aicc);
   for (const Trial& t : trials)
-    if (t.score.refused.empty() && t.score.aicc <= least + kStrong) return &t;
+    if (t.score.refused.empty() && t.score.aicc <= least + kStrongAicc) return &t;
   return nullptr;
 }
 
-int fewest_bits(const PatchSet& set) {
-  double largest = 0;
+int fewest_bits(const PatchSet& set, double clip_code) {
+  double largest = std::max(clip_code, set.largest_code);
   for (const auto* patches : {&set.fit, &set.check})
     for (const Patch& p : *patches) largest = std::max(largest, p.code);
   for (const int bits : {8, 10, 12, 14})
     if (largest < std::ldexp(1.0, bits)) return bits;
   return 16;
+}
+
+constexpr double kUsualExposure_us = 10000;
+
+double first_exposure(const PatchSet& set) {
+  for (const auto* patches : {&set.fit, &set.check})
+    if (!patches->empty() && patches->front().exposure_us > 0) return patches->front().exposure_us;
+  return 0;
+}
+
+// Bits, clip code and exposure: as stated, else assumed and noted.
+void set_scale(ResponseFit& fit, const PatchSet& patches, const ResponseFitOptions& options) {
+  const auto assume = [&](const char* key, double value, const char* reason, const char* option) {
+    fit.assumed.push_back({key, value, reason, option});
+    return value;
+  };
+  fit.response.bits = options.bits > 0 ? options.bits : patches.bits;
+  if (fit.response.bits == 0)
+    fit.response.bits = static_cast<int>(
+        assume("bits", fewest_bits(patches, options.clip_code), "the fewest that hold every code", "--bits"));
+  const double top = std::ldexp(1.0, fit.response.bits) - 1;
+  if (options.clip_code > 0)
+    fit.response.clip_code = options.clip_code;
+  else if (patches.still_at_code > 0 && patches.still_at_code < top)
+    fit.response.clip_code = assume("clip_code", patches.still_at_code,
+                                    "as pixels stand still there and the others do not", "--clip-code");
+  else
+    fit.response.clip_code = assume("clip_code", top, "the largest code of these bits", "--clip-code");
+  fit.response.reference_exposure_us = options.reference_exposure_us;
+  if (!(options.reference_exposure_us > 0)) fit.response.reference_exposure_us = first_exposure(patches);
+  if (!(fit.response.reference_exposure_us > 0))
+    fit.response.reference_exposure_us =
+        assume("reference_exposure_us", kUsualExposure_us, "a usual one", "--exposure-us");
 }
 
 // Codes that mean light: above that of darkness.
@@ -209,7 +241,7 @@ double black_code(const Response& response) {
   return std::isfinite(dark) && dark >= 0 ? std::floor(dark) + 1 : 0;
 }
 
-Status set_covariance(ResponseFit& fit, const Trial& trial) {
+Status set_covariance(ResponseFit& fit, const Trial& trial, bool several) {
   const auto k = static_cast<Eigen::Index>(trial.score.parameters);
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(k, k);
   for (const CurvePoint& p : trial.curve.points) {
@@ -231,6 +263,8 @@ Status set_covariance(ResponseFit& fit, const Trial& trial) {
   const double n = static_cast<double>(trial.curve.points.size());
   fit.degrees = kPrior + n - static_cast<double>(k);
   fit.noise_scale = std::sqrt((kPrior + trial.curve.fit.chi2) / fit.degrees);
+  // Readings of one patch agree better than its luminance is known: that says nothing about the meter.
+  if (several) fit.noise_scale = std::max(1.0, fit.noise_scale);
   fit.t95 = student_two_sided(0.95, fit.degrees);
   fit.covariance = fit.noise_scale * fit.noise_scale *
                    (size.cwiseInverse().asDiagonal() * lu.inverse() * size.cwiseInverse().asDiagonal());
@@ -243,17 +277,30 @@ PatchResidual residual_of(const ResponseFit& fit, const Patch& patch, double cod
   out.patch = patch;
   out.luminance_cd_m2 = response.luminance_cd_m2(patch.code);
   out.code_residual = patch.code - response.code(patch.luminance_cd_m2);
-  const double ratio = out.luminance_cd_m2 / patch.luminance_cd_m2;
-  out.relative_error = ratio - 1;
-  out.stops = ratio > 0 ? std::log2(ratio) : -kNever;
   const double sigma_code = patch.code_sigma > 0 ? patch.code_sigma : code_sigma;
-  const double of_code = sigma_code * response.dluminance_dcode(patch.code) / out.luminance_cd_m2;
-  const double sigma =
-      std::hypot(fit.relative_sigma(patch.code), fit.noise_scale * std::hypot(of_code, fit.luminance_error));
-  // In the logarithm, as relative errors are; where the light is no more than its error, down to 0.
-  const double wide = fit.t95 * sigma;
-  out.interval = {wide < 1 ? out.luminance_cd_m2 * std::exp(-wide) : 0,
-                  out.luminance_cd_m2 * std::exp(std::min(wide, 100.0))};
+  if (!(patch.luminance_cd_m2 > 0 &&
+        out.luminance_cd_m2 > 0)) {  // darkness has no logarithm: in absolute light
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    out.relative_error = patch.luminance_cd_m2 > 0 ? out.luminance_cd_m2 / patch.luminance_cd_m2 - 1 : nan;
+    out.stops = nan;
+    const Eigen::VectorXd j = dcode_dparameters(response.model, std::max(out.luminance_cd_m2, 0.0));
+    const double of_fit = std::sqrt(std::max(0.0, j.dot(fit.covariance * j)));
+    const double wide = fit.t95 * std::hypot(std::hypot(of_fit, fit.noise_scale * sigma_code) *
+                                                 response.dluminance_dcode(patch.code),
+                                             fit.noise_scale * fit.luminance_error * patch.luminance_cd_m2);
+    out.interval = {std::max(0.0, out.luminance_cd_m2 - wide), std::max(0.0, out.luminance_cd_m2 + wide)};
+  } else {
+    const double ratio = out.luminance_cd_m2 / patch.luminance_cd_m2;
+    out.relative_error = ratio - 1;
+    out.stops = std::log2(ratio);
+    const double of_code = sigma_code * response.dluminance_dcode(patch.code) / out.luminance_cd_m2;
+    const double sigma = std::hypot(fit.relative_sigma(patch.code),
+                                    fit.noise_scale * std::hypot(of_code, fit.luminance_error));
+    // In the logarithm, as relative errors are; where the light is no more than its error, down to 0.
+    const double wide = fit.t95 * sigma;
+    out.interval = {wide < 1 ? out.luminance_cd_m2 * std::exp(-wide) : 0,
+                    out.luminance_cd_m2 * std::exp(std::min(wide, 100.0))};
+  }
   out.inside = patch.luminance_cd_m2 >= out.interval[0] && patch.luminance_cd_m2 <= out.interval[1];
   return out;
 }
@@ -291,12 +338,18 @@ double ResponseFit::relative_sigma(double code) const {
   return luminance > 0 ? sigma_code * response.dluminance_dcode(code) / luminance : kNever;
 }
 
+double clip_code_of(const PatchSet& patches, const ResponseFitOptions& options) {
+  ResponseFit fit;
+  set_scale(fit, patches, options);
+  return fit.response.clip_code;
+}
+
 Result<ResponseFit> fit_response(const PatchSet& given, const ResponseFitOptions& options) {
   ResponseFit fit;
-  fit.response.bits = options.bits > 0 ? options.bits : fewest_bits(given);
-  fit.response.clip_code = options.clip_code > 0 ? options.clip_code : std::ldexp(1.0, fit.response.bits) - 1;
-  fit.response.reference_exposure_us = options.reference_exposure_us;
-  const auto patches = ordered_and_checked(given, fit.response.clip_code, options.code_sigma);
+  set_scale(fit, given, options);
+  const auto patches =
+      ordered_and_checked(at_exposure(given, fit.response.reference_exposure_us, options.luminance_error),
+                          fit.response.clip_code, options.code_sigma);
   if (!patches) return patches.error();
   const auto in_file = [&](const Error& e) { return Error{e.kind, given.file + ": " + e.message}; };
 
@@ -308,11 +361,13 @@ Result<ResponseFit> fit_response(const PatchSet& given, const ResponseFitOptions
     return in_file({ErrorKind::bad_input, "model " + std::string(name(trials.front().score.curve)) + ": " +
                                               trials.front().score.refused});
   fit.curve = chosen->score.curve;
+  fit.curve_given = options.curve.has_value();
   fit.response.model = chosen->curve.fit.model;
   fit.response.black_code = std::min(black_code(fit.response), fit.response.clip_code - 1);
   if (const Status status = check(fit.response); !status) return in_file(status.error());
   fit.luminance_error = options.luminance_error;
-  if (const Status status = set_covariance(fit, *chosen); !status) return in_file(status.error());
+  if (const Status status = set_covariance(fit, *chosen, several_exposures(given)); !status)
+    return in_file(status.error());
   for (std::size_t i = 0; i < patches->fit.size(); ++i) {
     fit.fit.push_back(residual_of(fit, patches->fit[i], options.code_sigma));
     fit.fit.back().rejected = chosen->rejected == i;

@@ -15,12 +15,20 @@
 namespace lightwell::calibration {
 
 struct ResponseFitOptions {
-  std::optional<Curve> curve;     // none: the simplest that the patches support
-  double luminance_error = 0.01;  // relative standard deviation of the patches' luminances
-  double code_sigma = 0.5;        // codes; of patches that do not say
-  int bits = 0;                   // 0: the fewest of 8, 10, 12, 14, 16 that hold every code
-  double clip_code = 0;           // 0: the largest code
-  double reference_exposure_us = 10000;
+  std::optional<Curve> curve;        // none: the simplest that the patches support
+  double luminance_error = 0.01;     // relative standard deviation of the patches' luminances
+  double code_sigma = 0.5;           // codes; of patches that do not say
+  int bits = 0;                      // 0: the fewest of 8, 10, 12, 14, 16 that hold every code
+  double clip_code = 0;              // 0: the largest code
+  double reference_exposure_us = 0;  // 0: that of the first patch that says one, else 10000
+};
+
+// What neither the options nor the patches said, though codes mean nothing without it.
+struct Assumption {
+  std::string key;  // of response.json
+  double value = 0;
+  std::string reason;  // "the fewest that hold every code"
+  std::string option;  // that states it: "--bits"
 };
 
 // One form of curve, tried on the patches.
@@ -37,8 +45,8 @@ struct PatchResidual {
   Patch patch;
   bool rejected = false;       // left out of the fit: it contradicts the others
   double luminance_cd_m2 = 0;  // that the fitted response gives for the patch's code
-  double relative_error = 0;   // luminance_cd_m2 / the patch's − 1
-  double stops = 0;            // log2 of their ratio
+  double relative_error = 0;   // luminance_cd_m2 / the patch's − 1; NaN: the patch is dark
+  double stops = 0;            // log2 of their ratio; NaN: one of them is dark
   double code_residual = 0;    // code − that of the fitted response
   std::array<double, 2> interval = {0,
                                     0};  // 95 %, for the true luminance and a reading of it as good as stated
@@ -55,11 +63,13 @@ struct PatchResidual {
 struct ResponseFit {
   Response response;
   Curve curve = Curve::log;
+  bool curve_given = false;    // not chosen among all
   Eigen::MatrixXd covariance;  // in the order of parameter_names(response.model)
   double noise_scale = 1;      // square root of the scale above
   double degrees = 0;
   double t95 = 0;              // Student's, two-sided
   double luminance_error = 0;  // as stated
+  std::vector<Assumption> assumed;
   std::vector<PatchResidual> fit, check;
   std::vector<CurveScore> scores;
   std::optional<std::array<double, 2>> usable_codes;  // between the patches, where error_95 < kUsableError
@@ -70,10 +80,18 @@ struct ResponseFit {
   [[nodiscard]] double relative_error_95(double code) const { return t95 * relative_sigma(code); }
 };
 inline constexpr double kUsableError = 0.05;
+// Difference of AICc that leaves the other no support (Burnham and Anderson 2002).
+inline constexpr double kStrongAicc = 10;
+
+// The code from which fit_response takes codes of this set for clipped.
+double clip_code_of(const PatchSet& patches, const ResponseFitOptions& options);
 
 // Robust against one bad patch: where leaving one out makes the others agree, by more than chance allows, it is left out
 // and marked. Curves are compared by the corrected Akaike criterion (Hurvich and Tsai 1989) with the noise known: a
 // simpler curve wins unless another is better by 10.
+// What is not stated is assumed, on the safe side, and said: bits are the fewest that hold every code and clip_code the
+// largest code of these, because a clipped code taken for light is wrong without a sign, light taken for clipped is
+// counted, and frames of more bits are refused.
 // bad_input: see ordered_and_checked; no curve rises; the chosen one has too many parameters for the patches.
 Result<ResponseFit> fit_response(const PatchSet& patches, const ResponseFitOptions& options);
 

@@ -22,10 +22,10 @@ ordered_json json_of(const PatchResidual& r, bool check) {
   ordered_json out = {{"patch", r.patch.name},
                       {"luminance_cd_m2", r.patch.luminance_cd_m2},
                       {"code", r.patch.code},
-                      {"measured_cd_m2", r.luminance_cd_m2},
+                      {"measured_cd_m2", finite(r.luminance_cd_m2)},
                       {"relative_error", finite(r.relative_error)},
                       {"stops", finite(r.stops)},
-                      {"code_residual", r.code_residual},
+                      {"code_residual", finite(r.code_residual)},
                       {"interval_95_cd_m2", {r.interval[0], finite(r.interval[1])}}};
   if (check)
     out["inside_95"] = r.inside;
@@ -103,6 +103,13 @@ std::optional<double> gain_named(const ResponseReport& report, char letter) {
   return std::nullopt;
 }
 
+std::string selection_rule(const ResponseFit& fit) {
+  const std::string within =
+      " whose AICc is within " + std::to_string(static_cast<int>(kStrongAicc)) + " of the least";
+  if (!fit.curve_given) return "the first of linear, log, linlog, pwl" + within;
+  return fit.curve == Curve::pwl ? "given, with the fewest segments" + within : "given";
+}
+
 std::string line(const char* format, auto... values) {
   char text[400];
   std::snprintf(text, sizeof text, format, values...);
@@ -125,28 +132,42 @@ Result<ResponseReport> calibrate_response(const PatchSet& patches, const std::st
   for (const std::string& other : channels) {
     if (other == report.channel) continue;
     const auto checked =
-        ordered_and_checked(of_channel(patches, other), report.fit.response.clip_code, options.code_sigma);
+        ordered_and_checked(at_exposure(of_channel(patches, other), report.fit.response.reference_exposure_us,
+                                        options.luminance_error),
+                            report.fit.response.clip_code, options.code_sigma);
     if (!checked) return checked.error();
     report.channels.push_back(gain_of(report.fit, *checked, other));
   }
   return report;
 }
 
+std::vector<std::string> assumption_lines(const ResponseReport& report) {
+  std::vector<std::string> out;
+  for (const Assumption& a : report.fit.assumed)
+    out.push_back(line("%s = %g is assumed, %s: %s states it", a.key.c_str(), a.value, a.reason.c_str(),
+                       a.option.c_str()));
+  return out;
+}
+
 ordered_json report_to_json(const ResponseReport& report) {
   const ResponseFit& fit = report.fit;
   ordered_json out = {{"schema", "lightwell.response-fit/1"}, {"source", report.source}};
+  if (report.recorded) out["measured_in"] = to_json(*report.recorded);
   if (!report.channel.empty()) out["channel"] = report.channel;
   out["model"] = name(fit.curve);
   out["parameters"] = response_to_json(fit.response, false).at("parameters");
   out["bits"] = fit.response.bits;
   out["clip_code"] = fit.response.clip_code;
+  out["assumed"] = ordered_json::object();
+  for (const Assumption& a : fit.assumed) out["assumed"][a.key] = a.value;
   out["parameter_order"] = parameter_names(fit.response.model);
   out["covariance"] = covariance_of(fit);
   out["noise_scale"] = fit.noise_scale;
   out["degrees_of_freedom"] = fit.degrees;
   out["t95"] = fit.t95;
   out["luminance_error"] = fit.luminance_error;
-  out["selection"] = "AICc";
+  out["selection"] = fit.curve_given ? "given" : "AICc";
+  out["selection_rule"] = selection_rule(fit);
   out["models"] = ordered_json::array();
   for (const CurveScore& score : fit.scores) out["models"].push_back(json_of(score));
   out["fit"] = ordered_json::array();
@@ -176,6 +197,8 @@ std::string response_file(const ResponseReport& report) {
   out["table"]["relative_sigma"] = std::move(sigma);
   out["fit"] = nlohmann::json::parse(
       report_to_json(report).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  out["assumed"] = std::move(out["fit"]["assumed"]);
+  out["fit"].erase("assumed");
   const auto red = gain_named(report, 'r'), green = gain_named(report, 'g'), blue = gain_named(report, 'b');
   if (red && green && blue)
     add_colour_matrix(out, Eigen::Vector3d(1 / *red, 1 / *green, 1 / *blue).asDiagonal().toDenseMatrix());
@@ -184,8 +207,8 @@ std::string response_file(const ResponseReport& report) {
 
 std::string summary(const ResponseReport& report) {
   const ResponseFit& fit = report.fit;
-  std::string out =
-      line("model %s, %d bits, chosen by AICc:", std::string(name(fit.curve)).c_str(), fit.response.bits);
+  std::string out = line("model %s, %d bits, %s:", std::string(name(fit.curve)).c_str(), fit.response.bits,
+                         selection_rule(fit).c_str());
   const auto names = parameter_names(fit.response.model);
   const auto values = parameters_of(fit.response.model);
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -194,8 +217,11 @@ std::string summary(const ResponseReport& report) {
   }
   out += "\n     patch            cd/m2      code     error     stops\n";
   const auto add = [&](const PatchResidual& r, const char* use) {
-    out += line("  %-14.14s %10.5g %9.2f  %+7.2f %%  %+7.3f  %s\n", r.patch.name.c_str(),
-                r.patch.luminance_cd_m2, r.patch.code, 100 * r.relative_error, r.stops, use);
+    out += line("  %-14.14s %10.5g %9.2f", r.patch.name.c_str(), r.patch.luminance_cd_m2, r.patch.code);
+    if (std::isfinite(r.stops))
+      out += line("  %+7.2f %%  %+7.3f  %s\n", 100 * r.relative_error, r.stops, use);
+    else
+      out += line("  measured %.3g, no ratio to darkness  %s\n", r.luminance_cd_m2, use);
   };
   for (const PatchResidual& r : fit.fit) add(r, r.rejected ? "left out: it contradicts the others" : "");
   for (const PatchResidual& r : fit.check)

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/photometric/recorded_patches.h"
 #include "calibration/photometric/response_fit.h"
 
 namespace lightwell::calibration {
@@ -19,8 +20,9 @@ struct ChannelGain {
 };
 
 struct ResponseReport {
-  std::string source;   // the file of the patches
-  std::string channel;  // that was fitted; empty: there is one only
+  std::string source;                       // the file of the patches
+  std::optional<RecordedPatches> recorded;  // where they were measured in a take
+  std::string channel;                      // that was fitted; empty: there is one only
   ResponseFit fit;
   std::vector<ChannelGain> channels;
 };
@@ -35,6 +37,8 @@ nlohmann::ordered_json report_to_json(const ResponseReport& report);
 // The text of response.json: the model, its table with the relative standard deviation of every code, the report. Where
 // red, green and blue were measured on grey, the matrix that makes grey grey stands in it too.
 std::string response_file(const ResponseReport& report);
+// "bits = 12 is assumed, the fewest that hold every code: --bits states it", a line each.
+std::vector<std::string> assumption_lines(const ResponseReport& report);
 // A few lines for a person.
 std::string summary(const ResponseReport& report);
 

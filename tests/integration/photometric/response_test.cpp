@@ -67,6 +67,71 @@ TEST_F(CalibrateResponse, WritesAResponseThatTheDaemonReadsAndAReport) {
   EXPECT_GT(luminance[0].get<double>(), 0);
 }
 
+TEST_F(CalibrateResponse, AGivenModelIsNotCalledChosen) {
+  write("patches.csv", good_csv());
+  auto arguments = command("patches.csv");
+  arguments.insert(arguments.end(), {"--model", "log"});
+  const auto run = calibrate(arguments);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(nlohmann::json::parse(run.out).at("selection"), "given");
+  EXPECT_EQ(nlohmann::json::parse(run.out).at("selection_rule"), "given");
+  arguments = {"response", path("patches.csv"), "--out", path("response.json"), "--model", "log"};
+  EXPECT_NE(calibrate(arguments).out.find("bits, given:"), std::string::npos);
+}
+
+TEST_F(CalibrateResponse, GuessesAreSaidOnStderrAndInTheFile) {
+  write("patches.csv", good_csv());
+  auto run = calibrate(command("patches.csv"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  for (const char* says :
+       {"bits = 12 is assumed", "--bits states it", "clip_code = 4095 is assumed", "--clip-code states it",
+        "reference_exposure_us = 10000 is assumed", "--exposure-us"})
+    EXPECT_THAT(run.err, testing::HasSubstr(says));
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 3);
+  EXPECT_EQ(read_json("response.json").at("assumed"),
+            nlohmann::json::parse(R"({"bits": 12, "clip_code": 4095, "reference_exposure_us": 10000})"));
+
+  auto arguments = command("patches.csv");
+  arguments.insert(arguments.end(), {"--bits", "12", "--clip-code", "4000", "--exposure-us", "8000"});
+  run = calibrate(arguments);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  EXPECT_EQ(read_json("response.json").at("assumed"), nlohmann::json::object());
+}
+
+TEST_F(CalibrateResponse, ExposuresInTheFileSpreadFewCardsOverMoreDecades) {
+  std::string text = "name,luminance_cd_m2,exposure_us,code,code_sigma\n";
+  for (const double l : {5.0, 30.0, 200.0})
+    for (const double exposure : {100.0, 10000.0}) {
+      char line[100];
+      std::snprintf(line, sizeof line, "card %g,%g,%g,%.1f,0.3\n", l, l, exposure,
+                    kTruth.code(l * exposure / 100));
+      text += line;
+    }
+  write("patches.csv", text);
+  const auto run = calibrate(command("patches.csv"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto response = read_response(path("response.json"));
+  ASSERT_TRUE(response) << response.error().message;
+  EXPECT_EQ(response->reference_exposure_us, 100);  // the first
+  for (double l = 5; l < 2e4; l *= 2)               // codes rounded to a tenth
+    EXPECT_NEAR(response->luminance_cd_m2(kTruth.code(l)) / l, 1, 3e-3);
+  EXPECT_EQ(run.err.find("reference_exposure_us"), std::string::npos);
+}
+
+TEST_F(CalibrateResponse, ADarkCheckPatchHasAnIntervalInLightAndNoRatio) {
+  write("patches.csv", good_csv() + "dark,0," + std::to_string(kTruth.code(0)) + ",0.5,check\n");
+  const auto run = calibrate(command("patches.csv"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto dark = nlohmann::json::parse(run.out).at("check").at(0);
+  EXPECT_TRUE(dark.at("relative_error").is_null());
+  EXPECT_TRUE(dark.at("stops").is_null());
+  EXPECT_TRUE(dark.at("inside_95").get<bool>());
+  EXPECT_EQ(dark.at("interval_95_cd_m2").at(0).get<double>(), 0);
+  EXPECT_GT(dark.at("interval_95_cd_m2").at(1).get<double>(), 0);
+  EXPECT_LT(dark.at("interval_95_cd_m2").at(1).get<double>(), 0.05);  // no light is not the toe's own size
+}
+
 TEST_F(CalibrateResponse, NamesTheBadPatchAndGoesOnWithoutIt) {
   std::string text = good_csv();
   text.replace(text.find(",25,"), 4, ",33,");
@@ -104,6 +169,8 @@ TEST_F(CalibrateResponse, BadInputIsRefusedInOneLineAndNothingIsChanged) {
        "line 5: luminance_cd_m2 = 100 stands in line 4"},
       {"luminance_cd_m2,code\n1,100\n10,200\n100,150\n1000,400\n", "line 4: code = 150"},
       {"luminance_cd_m2,code\n1,100\n10,200\n100,300\n1000,1023\n", "line 5: code = 1023 is clipped"},
+      {"luminance_cd_m2,code\n1,100\n10,200\n100,300\n1000,400\n10000,401\n", "line 6: code = 401"},
+      {"luminance_cd_m2,code,exposure_us\n1,100,10\n10,200,0\n", "line 3: exposure_us = 0"},
       {"luminance_cd_m2,code\n1,0\n10,200\n100,300\n1000,1000\n", "line 2: code = 0 is clipped"},
       {"luminance_cd_m2,code\n1,100\n10,200,7\n", "line 3: 3 fields: allowed 2"},
       {"luminance_cd_m2,code,use\n1,100,never\n", "line 2: use = never"},
@@ -125,6 +192,12 @@ TEST_F(CalibrateResponse, WrongUsageEndsWithTwoAndAMissingFolderWithOne) {
   arguments = command("patches.csv");
   arguments.insert(arguments.end(), {"--luminance-error", "nan"});
   expect_refused(arguments, 2, "--luminance-error", "response.json");
+  arguments = command("patches.csv");
+  arguments.insert(arguments.end(), {"--bits", "3"});
+  expect_refused(arguments, 2, "--bits = 3: allowed 8 to 16", "response.json");
+  arguments = command("patches.csv");
+  arguments.insert(arguments.end(), {"--bits", "12", "--clip-code", "9000"});
+  expect_refused(arguments, 2, "--clip-code = 9000: allowed 1 to 4095", "response.json");
   arguments = command("patches.csv");
   arguments.insert(arguments.end(), {"--channel", "X"});
   expect_refused(arguments, 2, "--channel = X", "response.json");

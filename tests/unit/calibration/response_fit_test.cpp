@@ -301,6 +301,71 @@ TEST(ResponseFit, CodesWithoutASigmaMayFallByTheNoiseAssumedOfThem) {
   EXPECT_TRUE(fit_response(set, options));
 }
 
+TEST(ResponseFit, WhatIsNotStatedIsAssumedAndNamed) {
+  const auto keys = [](const Result<ResponseFit>& fit) {
+    std::string all;
+    for (const Assumption& a : fit->assumed) all += a.key + " ";
+    return all;
+  };
+  PatchSet set = patches_of(kLog, kSixDecades);
+  EXPECT_EQ(keys(fit_response(set, {})), "bits clip_code reference_exposure_us ");
+  ResponseFitOptions stated;
+  stated.bits = 12;
+  stated.clip_code = 4000;
+  stated.reference_exposure_us = 10000;
+  EXPECT_EQ(keys(fit_response(set, stated)), "");
+  ResponseFitOptions clip_only;
+  clip_only.clip_code = 9000;  // says that there are more bits than the codes need
+  const auto fit = fit_response(set, clip_only);
+  EXPECT_EQ(fit->response.bits, 14);
+  EXPECT_EQ(keys(fit), "bits reference_exposure_us ");
+  for (Patch& p : set.fit) p.exposure_us = 2500;
+  EXPECT_EQ(keys(fit_response(set, {})), "bits clip_code ");
+  EXPECT_EQ(fit_response(set, {})->response.reference_exposure_us, 2500);
+}
+
+TEST(ResponseFit, ABrightestPatchThatStandsStillIsClippingNotAnOutlier) {
+  PatchSet set = patches_of(kLog, kSixDecades);
+  set.fit[5].code = set.fit[4].code + 1;
+  expect_refused(set, "patch 6: code = 2620");
+  expect_refused(set, "the sensor clips there; state it with --clip-code");
+  // A companding sensor whose last segment is flat is none: it still rises.
+  const PiecewiseLinearResponse flat{{{0, 60}, {12, 1084}, {95, 2108}, {1500, 3132}, {24000, 3200}}};
+  EXPECT_TRUE(fit_response(patches_of(flat, {0.5, 4, 9, 20, 50, 90, 200, 700, 1400, 3000, 9000, 20000}), {}));
+}
+
+TEST(ResponseFit, ExposuresScaleTheLightAndDoNotMultiplyWhatTheMeterKnows) {
+  const std::vector<double> cards = {2, 9, 40, 180};
+  const auto set_at = [&](const std::vector<double>& exposures, unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    PatchSet set;
+    set.file = "patches.csv";
+    for (std::size_t i = 0; i < cards.size(); ++i) {
+      const double read =
+          cards[i] * (1 + 0.01 * normal(random));  // one reading of the meter for all exposures
+      for (const double exposure : exposures) {
+        const double code = kLog.code(cards[i] * exposure / 10000) + 0.3 * normal(random);
+        set.fit.push_back({"card " + std::to_string(i), read, code, 0.3, "", exposure, 0});
+      }
+    }
+    return set;
+  };
+  ResponseFitOptions options;
+  options.reference_exposure_us = 10000;
+  int inside = 0;
+  constexpr int kSeeds = 200;
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+    const auto fit = fit_response(set_at({100, 1000, 10000, 100000}, seed), options);
+    ASSERT_TRUE(fit) << fit.error().message;
+    ASSERT_EQ(fit->curve, Curve::log);
+    const double error = fit->response.luminance_cd_m2(kLog.code(40)) / 40 - 1;
+    inside += std::abs(error) < fit->relative_error_95(kLog.code(40));
+  }
+  // 95 % or more: 190, less three standard deviations √(200 · .95 · .05) = 3.1.
+  EXPECT_GE(inside, 181);
+}
+
 TEST(ResponseFit, BitsAreTheFewestThatHoldTheCodesUnlessGiven) {
   EXPECT_EQ(fit_response(patches_of(kLog, kSixDecades), {})->response.bits, 12);
   ResponseFitOptions options;
