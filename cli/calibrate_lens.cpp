@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -40,7 +41,11 @@ void print_text(const calibration::LensCalibration& c, const calibration::Target
   std::printf("k                ");
   for (int i = 0; i < c.freedom.coefficients; ++i)
     std::printf(" %.6f", c.lens.k[static_cast<std::size_t>(i)]);
-  std::printf("\nerror             %.3f px rms, %.3f px on views held out\n", c.rms_px, c.held_out_rms_px);
+  std::printf("\nerror             %.3f px rms, ", c.rms_px);
+  if (std::isfinite(c.held_out_rms_px))
+    std::printf("%.3f px on views held out\n", c.held_out_rms_px);
+  else
+    std::printf("too few views to hold some out\n");
   if (c.shape)
     std::printf(
         "board             stretched by %.2f mm, sheared by %.2f mm, bent by up to %.2f mm on half its "
@@ -88,13 +93,30 @@ Result<Input> read_input(const LensOptions& options) {
   return Input{*std::move(views), ""};
 }
 
+// Two outputs of one name overwrite each other; one that is an input loses it.
 Status check_outputs(const LensOptions& options) {
+  if (!options.corners_out.empty() && options.corners_out == options.out)
+    return usage("--corners-out and --out name one file, " + options.out + ", allowed two");
   for (const std::string& output : {options.out, options.corners_out}) {
     if (const Status other = check_output_is_no_input(output, {options.corners}); !other) return other;
     for (const auto& picture : options.pictures)
       if (const Status other = check_output_is_no_input(output, {picture}); !other) return other;
   }
   return {};
+}
+
+// Both files or neither: nothing is renamed into place before both are written.
+Status write(const LensOptions& options, const std::string& lens,
+             const calibration::TargetViews& target_views) {
+  auto out = AtomicFileWriter::create(options.out);
+  if (!out) return out.error();
+  if (Status status = out->append(lens + "\n"); !status) return status;
+  if (options.corners_out.empty()) return out->commit();
+  auto corners = AtomicFileWriter::create(options.corners_out);
+  if (!corners) return corners.error();
+  if (Status status = corners->append(calibration::to_json(target_views)); !status) return status;
+  if (Status status = corners->commit(); !status) return status;
+  return out->commit();
 }
 
 int run(const LensOptions& options) {
@@ -108,15 +130,12 @@ int run(const LensOptions& options) {
   if (!solved) return fail({solved.error().kind, input->name + solved.error().message});
   for (std::size_t i = 0; i < input->views.reasons.size(); ++i)
     if (!input->views.reasons[i].empty()) solved->views[i].reason = input->views.reasons[i];
-  const nlohmann::ordered_json report = calibration::lens_report(*solved, target_views);
-  if (!options.corners_out.empty())
-    if (const Status status = write_file_atomically(options.corners_out, calibration::to_json(target_views));
-        !status)
-      return fail(status.error());
-  if (const Status status = write_file_atomically(options.out, report.dump() + "\n"); !status)
-    return fail(status.error());
+  // A picture's name may be no UTF-8: its bytes are then replaced.
+  const std::string report = calibration::lens_report(*solved, target_views)
+                                 .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  if (const Status status = write(options, report, target_views); !status) return fail(status.error());
   if (options.json)
-    std::printf("%s\n", report.dump().c_str());
+    std::printf("%s\n", report.c_str());
   else
     print_text(*solved, target_views, options.out);
   return 0;

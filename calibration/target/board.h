@@ -31,7 +31,7 @@ std::string name(const Board& board);
 struct Detection {
   std::vector<Correspondence> points;  // empty: not found
   std::string reason;                  // why not
-  bool of_no_board = false;            // not even corners such as the board has
+  bool of_no_board = false;            // sharp and bright, and not even corners such as a chessboard has
   bool board_is_larger = false;        // a chessboard that goes on beyond its columns or rows
 };
 

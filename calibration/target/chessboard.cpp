@@ -7,6 +7,8 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "calibration/target/corner_grid.h"
+
 namespace lightwell::calibration {
 namespace {
 
@@ -15,6 +17,11 @@ cv::Mat scaled(const cv::Mat& grey, double scale) {
   cv::Mat out;
   cv::resize(grey, out, {}, scale, scale, scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
   return out;
+}
+
+// At a width of about 700 px, where a check is some 10 px wide.
+cv::Mat overview(const cv::Mat& grey) {
+  return scaled(grey, std::min(1.0, 700.0 / std::max(grey.cols, grey.rows)));
 }
 
 float at(const cv::Mat& grey, cv::Point2f p) {
@@ -60,28 +67,68 @@ bool has_row_beyond(const cv::Mat& grey, const Border& border) {
   return seen >= 2 && 5 * found >= 4 * seen;
 }
 
-}  // namespace
+// Way from a corner to the next, half of them are shorter.
+double median_check_px(const CornerGrid& grid) {
+  std::vector<double> ways;
+  for (const auto& [place, corner] : grid.corners)
+    if (const auto next = grid.corners.find({place.first + 1, place.second}); next != grid.corners.end())
+      ways.push_back(cv::norm(next->second.pixel - corner.pixel));
+  if (ways.empty()) return 0;
+  const auto middle = ways.begin() + static_cast<std::ptrdiff_t>(ways.size() / 2);
+  std::nth_element(ways.begin(), middle, ways.end());
+  return *middle;
+}
 
-std::vector<cv::Point2f> find_chessboard(const cv::Mat& grey, int columns, int rows) {
-  const double base = std::min(1.0, 1400.0 / std::max(grey.cols, grey.rows));
+// OpenCV's two searches, at several scales. They find boards of which a corner of the grid is missed, but take minutes
+// on noise: only for pictures with checks.
+std::vector<cv::Point2f> search_by_quads(const cv::Mat& grey, cv::Size size, double check_px) {
   std::vector<cv::Point2f> corners;
-  const cv::Size size(columns, rows);
   const auto in_picture = [&](double scale) {
-    // The centre of pixel (0, 0) is the origin at every scale.
-    for (auto& p : corners)
-      p = (p + cv::Point2f(0.5f, 0.5f)) / static_cast<float>(scale) - cv::Point2f(0.5f, 0.5f);
+    const cv::Point2f half(0.5f, 0.5f);
+    for (auto& p : corners) p = (p + half) / scale - half;
     return corners;
   };
-  for (const double factor : {1.0, 0.5, 1.5, 0.75, 2.0})
-    if (cv::findChessboardCorners(scaled(grey, base * factor), size, corners,
+  constexpr double kSmall = 12;  // px: checks that a larger picture shows better
+  for (const double factor : {1.0, 0.5, 0.75, 1.5, 2.0}) {
+    if (factor > 1 && check_px > kSmall) continue;
+    if (cv::findChessboardCorners(scaled(grey, factor), size, corners,
                                   cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE))
-      return in_picture(base * factor);
+      return in_picture(factor);
+  }
   for (const double factor : {0.5, 0.75})
     if (cv::findChessboardCornersSB(
-            scaled(grey, base * factor), size, corners,
+            scaled(grey, factor), size, corners,
             cv::CALIB_CB_EXHAUSTIVE | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_ACCURACY))
-      return in_picture(base * factor);
+      return in_picture(factor);
   return {};
+}
+
+}  // namespace
+
+ChessboardSearch find_chessboard(const cv::Mat& grey, int columns, int rows) {
+  const double base = std::min(1.0, 1400.0 / std::max(grey.cols, grey.rows));
+  const cv::Mat sized = scaled(grey, base);
+  ChessboardSearch out;
+  int cells = 0;
+  double check_px = 0;
+  // A fisheye's dim and blurred border asks for a small picture, a far board for a large one.
+  for (const double factor : {0.5, 1.0, 0.25, 2.0}) {
+    CornerGrid grid = largest_corner_grid(sized, factor);
+    // Boards, hidden ones too, have a cell for most corners; by chance there are chains of corners.
+    if (3 * static_cast<std::size_t>(grid.cells) >= grid.corners.size() && grid.cells > cells) {
+      cells = grid.cells;
+      check_px = median_check_px(grid);
+    }
+    out.corners = corners_of_board(std::move(grid), columns, rows);
+    if (!out.corners.empty()) break;
+  }
+  out.shows_checks = cells >= std::clamp((columns - 1) * (rows - 1) / 3, 2, 20);
+  if (out.corners.empty() && out.shows_checks)
+    out.corners = search_by_quads(sized, {columns, rows}, check_px);
+  // The centre of pixel (0, 0) is the origin at every scale.
+  const cv::Point2f half(0.5f, 0.5f);
+  for (auto& p : out.corners) p = (p + half) / base - half;
+  return out;
 }
 
 void refine_corners(const cv::Mat& grey, const std::vector<double>& neighbour_px,
@@ -114,25 +161,23 @@ bool goes_on(const cv::Mat& grey, const std::vector<cv::Point2f>& corners, int c
                      [&](const Border& b) { return has_row_beyond(grey, b); });
 }
 
-std::size_t count_saddles(const cv::Mat& grey) {
-  // At a width of about 700 px a check is some 10 px wide.
-  cv::Mat small;
-  cv::GaussianBlur(scaled(grey, std::min(1.0, 700.0 / std::max(grey.cols, grey.rows))), small, {}, 1);
+bool is_sharp_and_bright(const cv::Mat& grey) {
+  const cv::Mat small = overview(grey);
   double darkest = 0, brightest = 0;
   cv::minMaxLoc(small, &darkest, &brightest);
-  const auto least = static_cast<float>(0.25 * (brightest - darkest));
-  if (least < 4) return 0;
-  constexpr int kRadius = 4, kApart = 4;
-  cv::Mat response(small.size(), CV_32F, cv::Scalar(0));
-  for (int y = kRadius; y < small.rows - kRadius; ++y)
-    for (int x = kRadius; x < small.cols - kRadius; ++x) {
-      const cv::Point2f p(static_cast<float>(x), static_cast<float>(y));
-      response.at<float>(y, x) =
-          std::max(checks(small, p, {3, 0}, {0, 3}), checks(small, p, {3, 3}, {3, -3}));
+  constexpr double kLeastContrast = 64;  // a quarter of what eight bits hold
+  if (brightest - darkest < kLeastContrast) return false;
+  // The rise over two pixels is 2 / (√2π σ) of an edge blurred by σ: a quarter of the contrast at 3 px, where checks
+  // of 10 px begin to run together. In so many places that no reflection or speck of dust decides.
+  constexpr double kLeastRise = 0.25, kLeastPart = 0.002;
+  std::size_t sharp = 0;
+  for (int y = 1; y + 1 < small.rows; ++y)
+    for (int x = 1; x + 1 < small.cols; ++x) {
+      const double across = small.at<std::uint8_t>(y, x + 1) - small.at<std::uint8_t>(y, x - 1);
+      const double down = small.at<std::uint8_t>(y + 1, x) - small.at<std::uint8_t>(y - 1, x);
+      sharp += std::hypot(across, down) > kLeastRise * (brightest - darkest);
     }
-  cv::Mat largest;
-  cv::dilate(response, largest, cv::Mat::ones(2 * kApart + 1, 2 * kApart + 1, CV_8U));
-  return static_cast<std::size_t>(cv::countNonZero((response == largest) & (response > least)));
+  return static_cast<double>(sharp) > kLeastPart * static_cast<double>(small.total());
 }
 
 }  // namespace lightwell::calibration

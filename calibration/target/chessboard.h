@@ -9,8 +9,13 @@
 
 namespace lightwell::calibration {
 
-// Inner corners, row by row; empty where they are not all found.
-std::vector<cv::Point2f> find_chessboard(const cv::Mat& grey, int columns, int rows);
+struct ChessboardSearch {
+  std::vector<cv::Point2f> corners;  // inner ones, row by row; empty where they are not all found
+  bool shows_checks = false;         // a third of the board's checks, or twenty, hang together somewhere
+};
+
+// A picture without checks costs some tenths of a second a megapixel, whatever its texture.
+ChessboardSearch find_chessboard(const cv::Mat& grey, int columns, int rows);
 
 // Corners moved to where the picture's edges meet, each in a window that fits between its neighbours.
 // neighbours: for each corner the distance to its nearest one, px
@@ -20,7 +25,8 @@ void refine_corners(const cv::Mat& grey, const std::vector<double>& neighbour_px
 // Whether the checks go on beyond the outermost corners, so that the board has more of them.
 bool goes_on(const cv::Mat& grey, const std::vector<cv::Point2f>& corners, int columns, int rows);
 
-// Places that look like a corner of four checks, anywhere in the picture.
-std::size_t count_saddles(const cv::Mat& grey);
+// Whether a board would show its corners here: black and white are far apart, and the strongest edges are narrower than
+// the checks of a board that fills the picture.
+bool is_sharp_and_bright(const cv::Mat& grey);
 
 }  // namespace lightwell::calibration

@@ -21,10 +21,11 @@ std::vector<double> nearest_px(const std::vector<cv::Point2f>& corners) {
 
 Detection chessboard(const cv::Mat& grey, const Board& board) {
   Detection out;
-  std::vector<cv::Point2f> corners = find_chessboard(grey, board.columns, board.rows);
+  ChessboardSearch search = find_chessboard(grey, board.columns, board.rows);
+  std::vector<cv::Point2f>& corners = search.corners;
   if (corners.empty()) {
-    // A third of the corners would show even where light or sharpness hides the rest.
-    out.of_no_board = 3 * count_saddles(grey) < static_cast<std::size_t>(board.columns * board.rows);
+    // Checks would show in a sharp and bright picture even where some are hidden.
+    out.of_no_board = !search.shows_checks && is_sharp_and_bright(grey);
     out.reason = out.of_no_board ? "shows no chessboard" : "no whole " + name(board) + " found";
     return out;
   }
@@ -51,7 +52,6 @@ Detection markers(const cv::Mat& grey, const Board& board) {
   refine_corners(grey, room, corners);
   for (std::size_t i = 0; i < corners.size(); ++i)
     out.points.push_back({found[i].target_mm, {corners[i].x, corners[i].y}});
-  out.of_no_board = out.points.empty();
   if (out.points.empty()) out.reason = "shows no marker of a " + name(board);
   return out;
 }

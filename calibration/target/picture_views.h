@@ -18,8 +18,9 @@ struct PictureViews {
 };
 
 // done: called with the number of pictures behind it.
-// bad_input names the picture: unreadable, of another size than the first, not of a board at all; or says that the
-// board has another size than asked for.
+// bad_input names the picture: no picture, of another size than the first, sharp and bright and clearly not of a
+// chessboard; or says that the board has another size than asked for. A picture too dark or blurred to tell is a view
+// without points.
 Result<PictureViews> views_of_pictures(const std::vector<std::string>& files, const Board& board,
                                        const std::function<void(std::size_t)>& done);
 

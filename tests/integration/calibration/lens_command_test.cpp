@@ -141,6 +141,39 @@ TEST_F(LensCommand, BadFilesAreNamed) {
   expect_refused({"--corners", path("none.json")}, 3, "0 views");
 }
 
+TEST_F(LensCommand, ANumberOutOfRangeIsOneLineWithItsPlace) {
+  const Lens lens{{640, 640}, {180, 180}, {330, 310}, {0, 0, 0, 0}, kPi / 2};
+  auto views = test::board_views(lens, {}).target_views;
+  views.views[2].points[3].target_mm.x() = 1e300;
+  ASSERT_TRUE(write_file_atomically(path("far.json"), calibration::to_json(views)));
+  expect_refused({"--corners", path("far.json")}, 3, "views[2].points[3][0] = 1e+300: allowed");
+}
+
+TEST_F(LensCommand, BothOutputsAreWrittenOrNeither) {
+  const Lens lens{{640, 640}, {180, 180}, {330, 310}, {0, 0, 0, 0}, kPi / 2};
+  ASSERT_TRUE(
+      write_file_atomically(path("in.json"), calibration::to_json(test::board_views(lens, {}).target_views)));
+  expect_refused({"--corners", path("in.json"), "--corners-out", path("absent/corners.json")}, 1, "absent");
+  expect_refused({"--corners", path("in.json"), "--corners-out", path("lens.json")}, 2, "--corners-out");
+  const ProcessResult run = test::run_process(
+      LIGHTWELL_BIN_DIR "/lightwell", {"calibrate", "lens", "--corners", path("in.json"), "--corners-out",
+                                       path("corners.json"), "--out", path("absent/lens.json")});
+  EXPECT_EQ(run.exit_code, 1) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(path("corners.json")));
+  ASSERT_EQ(calibrate({"--corners", path("in.json"), "--corners-out", path("corners.json")}).exit_code, 0);
+  EXPECT_EQ(read_text_file(path("corners.json")).value(), read_text_file(path("in.json")).value());
+}
+
+TEST_F(LensCommand, APictureWithANameThatIsNotUtf8Counts) {
+  std::vector<std::string> files = urban();
+  if (files.size() != 15) GTEST_SKIP() << "urban_fisheye1 is not in " << kData;
+  std::filesystem::copy_file(files[0], path("\xff.jpg"));
+  files[0] = path("\xff.jpg");
+  const ProcessResult run = calibrate(with(files, {"--board", "6x8:32.5", "--json"}));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(json::parse(run.out)["views"][0]["name"].get<std::string>(), HasSubstr("\xEF\xBF\xBD"));
+}
+
 TEST_F(LensCommand, AFolderThatIsMissingIsAFailure) {
   Lens lens{{640, 640}, {180, 180}, {330, 310}, {0, 0, 0, 0}, kPi / 2};
   ASSERT_TRUE(write_file_atomically(path("corners.json"),

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <opencv2/core.hpp>
+#include <utility>
+#include <vector>
+
+#include "calibration/target/saddles.h"
+
+namespace lightwell::calibration {
+
+// Saddles that hang together as the corners of checks do: from one to the next runs an edge with light on one side and
+// dark on the other.
+struct CornerGrid {
+  std::map<std::pair<int, int>, Saddle> corners;  // (column, row); rows follow columns as y follows x
+  int cells = 0;                                  // checks with all four corners and edges
+};
+
+// The grid of most cells in a picture made smaller by `scale` (or larger), in its pixels; empty where no four saddles
+// hang together. Edges are looked for in the picture itself, as dots and lines run together to something like checks
+// where it is made smaller. The number of saddles bounds the time.
+CornerGrid largest_corner_grid(const cv::Mat& grey, double scale);
+
+// The grid's corners, row by row, of a board of columns x rows; empty where it is of another size, or lacks a corner or an edge.
+// Borders with less than half of their corners are of the background. The first corner is one with light in the
+// quadrant of growing columns and rows where the board tells its ends apart by that, else the one that turns the board
+// least.
+std::vector<cv::Point2f> corners_of_board(CornerGrid grid, int columns, int rows);
+
+}  // namespace lightwell::calibration
