@@ -10,9 +10,10 @@
 #include "calibration/lens/lens_calibration.h"
 #include "calibration/lens/lens_report.h"
 #include "calibration/target/picture_views.h"
-#include "cli/command.h"
+#include "cli/gravity_option.h"
 #include "cli/progress.h"
 #include "interface/atomic_file.h"
+#include "interface/option_range.h"
 #include "interface/same_file.h"
 
 namespace lightwell::cli {
@@ -24,6 +25,8 @@ struct LensOptions {
   double marker_mm = 0;  // 0: the board's usual one
   std::string corners;
   std::string corners_out;
+  double max_theta_deg = 0;  // 0: to the farthest point that counts
+  std::string gravity;
   std::string out;
   bool json = false;
 };
@@ -51,7 +54,10 @@ void print_text(const calibration::LensCalibration& c, const calibration::Target
         "board             stretched by %.2f mm, sheared by %.2f mm, bent by up to %.2f mm on half its "
         "width\n",
         c.shape->change_mm[0], c.shape->change_mm[1], c.shape->change_mm.tail<3>().cwiseAbs().maxCoeff());
-  std::printf("field             to %.1f degrees off axis\n", c.lens.max_theta_rad * 180 / kPi);
+  std::printf("field             to %.1f degrees off axis", c.lens.max_theta_rad * 180 / kPi);
+  if (c.lens.max_theta_rad > c.supported_theta_rad)
+    std::printf(", extrapolated beyond %.1f", c.supported_theta_rad * 180 / kPi);
+  std::printf("\n");
   if (const std::string gaps = calibration::coverage_gaps(c, target_views); !gaps.empty())
     std::printf("no points         %s\n", gaps.c_str());
   std::printf("written           %s\n", out.c_str());
@@ -119,6 +125,18 @@ Status write(const LensOptions& options, const std::string& lens,
   return out->commit();
 }
 
+// What is set after the lens is solved: its field and its tilt.
+Status take_options(calibration::LensCalibration& solved, const LensOptions& options) {
+  if (options.max_theta_deg > 0)
+    if (const Status status = calibration::set_field(solved, options.max_theta_deg * kPi / 180); !status)
+      return usage("--max-theta: " + status.error().message);
+  if (options.gravity.empty()) return {};
+  const auto zenith = zenith_of_option(options.gravity);
+  if (!zenith) return zenith.error();
+  solved.lens.zenith = *zenith;
+  return {};
+}
+
 int run(const LensOptions& options) {
   if (const Status outputs = check_outputs(options); !outputs) return fail(outputs.error());
   const auto input = read_input(options);
@@ -130,6 +148,7 @@ int run(const LensOptions& options) {
   if (!solved) return fail({solved.error().kind, input->name + solved.error().message});
   for (std::size_t i = 0; i < input->views.reasons.size(); ++i)
     if (!input->views.reasons[i].empty()) solved->views[i].reason = input->views.reasons[i];
+  if (const Status set = take_options(*solved, options); !set) return fail(set.error());
   // A picture's name may be no UTF-8: its bytes are then replaced.
   const std::string report = calibration::lens_report(*solved, target_views)
                                  .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
@@ -160,6 +179,12 @@ Command add_calibrate_lens(CLI::App& calibrate) {
       "Points of the target and their pixels: {\"image_size\": [w, h], \"views\": [{\"name\": .., "
       "\"points\": [[X, Y, Z, u, v], ..]}]}, mm and pixels");
   command->add_option("--corners-out", o->corners_out, "What was found in the pictures, as for --corners");
+  command
+      ->add_option("--max-theta", o->max_theta_deg,
+                   "Where the field ends, degrees off axis; else at the farthest point of the board. Beyond "
+                   "that point the lens is extrapolated, and the file says so")
+      ->check(numbers_above_0_to(180, "above 0, at most 180 degrees"));
+  command->add_option("--gravity", o->gravity, kGravityHelp);
   command->add_option("--out", o->out, "The lens, with its uncertainty, JSON")->required();
   command->add_flag("--json", o->json, "The same on stdout");
   return {command, [o] { return run(*o); }};

@@ -207,6 +207,8 @@ std::string calibration_id(const Calibration& calibration) {
   for (const double v : lens.k) digest.add(v);
   // Degrees to radians and back is not always exact: equal to 1e-9 degrees is equal.
   digest.add(std::round(lens.max_theta_rad * 180 / kPi * 1e9));
+  if (lens.zenith != Vec3d::UnitZ())  // ids from before it was known stay
+    for (Eigen::Index i = 0; i < 3; ++i) digest.add(lens.zenith[i]);
   for (const double v : calibration.flat.vignetting) digest.add(v);
   // As a file holds them, so that what was written and read back is the same calibration.
   for (const float v : as_stored(calibration.flat.offset_codes)) digest.add(static_cast<double>(v));

@@ -32,6 +32,18 @@ bool JsonFields::has(std::string_view key) const {
   return object_.contains(key);
 }
 
+bool JsonFields::is_number(std::string_view key) const {
+  return has(key) && get(key).is_number();
+}
+
+bool JsonFields::is_object(std::string_view key) const {
+  return has(key) && get(key).is_object();
+}
+
+bool JsonFields::holds_lists(std::string_view key) const {
+  return has(key) && get(key).is_array() && !get(key).empty() && get(key)[0].is_array();
+}
+
 void JsonFields::fail(std::string_view key, std::string_view what) const {
   const std::string field = path_.empty() ? std::string(key) : path_ + "." + std::string(key);
   throw FieldFailure{{ErrorKind::bad_input, file_ + ": " + field + " " + std::string(what)}};
@@ -115,12 +127,24 @@ void JsonFields::numbers(std::string_view key, std::span<double> values, double 
   }
 }
 
-std::vector<double> JsonFields::number_list(std::string_view key) const {
-  const nlohmann::json& value = get(key);
-  if (!value.is_array()) fail(key, "is " + shown(value) + ", expected an array of numbers");
-  std::vector<double> list(value.size());
-  for (std::size_t i = 0; i < list.size(); ++i) list[i] = element(value, key, i);
+std::vector<double> JsonFields::numbers_in(const nlohmann::json& array, std::string_view key) const {
+  if (!array.is_array()) fail(key, "is " + shown(array) + ", expected an array of numbers");
+  std::vector<double> list(array.size());
+  for (std::size_t i = 0; i < list.size(); ++i) list[i] = element(array, key, i);
   return list;
+}
+
+std::vector<double> JsonFields::number_list(std::string_view key) const {
+  return numbers_in(get(key), key);
+}
+
+std::vector<std::vector<double>> JsonFields::lists(std::string_view key) const {
+  const nlohmann::json& value = get(key);
+  if (!value.is_array()) fail(key, "is " + shown(value) + ", expected an array of arrays");
+  std::vector<std::vector<double>> out;
+  for (std::size_t i = 0; i < value.size(); ++i)
+    out.push_back(numbers_in(value[i], std::string(key) + "[" + std::to_string(i) + "]"));
+  return out;
 }
 
 Result<nlohmann::json> parse_json(const std::string& text, const std::string& file) {

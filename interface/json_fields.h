@@ -28,6 +28,10 @@ class JsonFields {
   JsonFields(const nlohmann::json& object, std::string file, std::string path = "");
 
   [[nodiscard]] bool has(std::string_view key) const;
+  // What stands there, for files of other programs that write one thing in several ways; false where it is missing.
+  [[nodiscard]] bool is_number(std::string_view key) const;
+  [[nodiscard]] bool is_object(std::string_view key) const;
+  [[nodiscard]] bool holds_lists(std::string_view key) const;  // an array whose first element is one
   [[nodiscard]] JsonFields object(std::string_view key) const;
   [[nodiscard]] std::vector<JsonFields> objects(std::string_view key) const;  // of an array, in order
   [[nodiscard]] double number(std::string_view key) const;                    // finite
@@ -40,6 +44,7 @@ class JsonFields {
   void numbers(std::string_view key, std::span<double> values, double lowest = -kAny,
                double highest = kAny) const;
   [[nodiscard]] std::vector<double> number_list(std::string_view key) const;
+  [[nodiscard]] std::vector<std::vector<double>> lists(std::string_view key) const;  // of numbers
   [[noreturn]] void fail(std::string_view key, std::string_view what) const;
 
  private:
@@ -47,6 +52,7 @@ class JsonFields {
   [[nodiscard]] const nlohmann::json& get(std::string_view key) const;
   [[nodiscard]] const nlohmann::json& array_of(std::string_view key, std::size_t count) const;
   [[nodiscard]] double element(const nlohmann::json& array, std::string_view key, std::size_t i) const;
+  [[nodiscard]] std::vector<double> numbers_in(const nlohmann::json& array, std::string_view key) const;
 
   const nlohmann::json& object_;
   std::string file_;

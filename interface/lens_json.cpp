@@ -15,13 +15,16 @@ constexpr double kDegreesPerRadian = 180 / kPi;
 }  // namespace
 
 nlohmann::json lens_to_json(const Lens& lens) {
-  return {{"schema", kLensSchema},
-          {"model", "kannala-brandt"},
-          {"image_size", lens.image_size},
-          {"focal", {lens.focal.x(), lens.focal.y()}},
-          {"center", {lens.center.x(), lens.center.y()}},
-          {"k", lens.k},
-          {"max_theta_deg", lens.max_theta_rad * kDegreesPerRadian}};
+  nlohmann::json out = {{"schema", kLensSchema},
+                        {"model", "kannala-brandt"},
+                        {"image_size", lens.image_size},
+                        {"focal", {lens.focal.x(), lens.focal.y()}},
+                        {"center", {lens.center.x(), lens.center.y()}},
+                        {"k", lens.k},
+                        {"max_theta_deg", lens.max_theta_rad * kDegreesPerRadian}};
+  // Files of cameras whose gravity is unknown stay as they were.
+  if (lens.zenith != Vec3d::UnitZ()) out["zenith"] = {lens.zenith.x(), lens.zenith.y(), lens.zenith.z()};
+  return out;
 }
 
 Lens lens_from_json(const JsonFields& fields) {
@@ -42,6 +45,7 @@ Lens lens_from_json(const JsonFields& fields) {
   if (!(degrees > 0 && degrees <= 180))
     fields.fail("max_theta_deg", "= " + std::to_string(degrees) + ": allowed above 0, at most 180");
   lens.max_theta_rad = std::min(degrees / kDegreesPerRadian, kPi);
+  if (fields.has("zenith")) fields.numbers("zenith", {lens.zenith.data(), 3}, -1, 1);
   return lens;
 }
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "lighting/field_error.h"
+#include "lighting/orientation.h"
 #include "lighting/polynomial.h"
 
 namespace lightwell {
@@ -20,6 +22,15 @@ double theta_d(const std::array<double, 4>& k, double theta) {
 double theta_d_slope(const std::array<double, 4>& k, double theta) {
   const double t = theta * theta;
   return 1 + t * (3 * k[0] + t * (5 * k[1] + t * (7 * k[2] + t * 9 * k[3])));
+}
+
+// A slope near 0 would give one pixel the light of a wide angle.
+constexpr double kLeastSlope = 1e-3;
+
+// Least slope up to an angle: (θ², slope).
+std::pair<double, double> least_slope(const Lens& lens, double to_rad) {
+  return polynomial_minimum({1, 3 * lens.k[0], 5 * lens.k[1], 7 * lens.k[2], 9 * lens.k[3]}, 0,
+                            to_rad * to_rad);
 }
 
 // Newton's step where it stays inside the bracket, bisection where it does not: cannot diverge.
@@ -38,11 +49,16 @@ double solve_theta(const std::array<double, 4>& k, double distance, double lo, d
 }
 
 // Angle of the distance θd from the centre (pixels ÷ focal). The field is monotone; what lies beyond it gets
-// a root beyond it, or π where the extrapolation never comes so far.
+// a root beyond it, or, where the extrapolation never comes so far, the tangent at its edge: a pixel that rounding puts
+// past the edge stays there.
 double theta_from_distance(const Lens& lens, double distance) {
   if (distance <= theta_d(lens.k, lens.max_theta_rad))
     return solve_theta(lens.k, distance, 0, lens.max_theta_rad);
-  if (!(distance <= theta_d(lens.k, kPi))) return kPi;
+  if (!(distance <= theta_d(lens.k, kPi))) {
+    const double beyond =
+        (distance - theta_d(lens.k, lens.max_theta_rad)) / theta_d_slope(lens.k, lens.max_theta_rad);
+    return lens.max_theta_rad + beyond < kPi ? lens.max_theta_rad + beyond : kPi;
+  }
   return solve_theta(lens.k, distance, lens.max_theta_rad, kPi);
 }
 
@@ -207,14 +223,23 @@ Status check(const Lens& lens) {
       return field_error("lens.k[" + std::to_string(i) + "]", lens.k[i], "-1e6 to 1e6");
   if (!(lens.max_theta_rad > 0 && lens.max_theta_rad <= kPi))
     return field_error("lens.max_theta_rad", lens.max_theta_rad, "above 0, at most pi");
-  const auto [t, slope] = polynomial_minimum({1, 3 * lens.k[0], 5 * lens.k[1], 7 * lens.k[2], 9 * lens.k[3]},
-                                             0, lens.max_theta_rad * lens.max_theta_rad);
-  // A slope near 0 would give one pixel the light of a wide angle.
-  if (slope < 1e-3)
+  const auto [t, slope] = least_slope(lens, lens.max_theta_rad);
+  if (slope < kLeastSlope)
     return field_error(
         "lens.k: slope of the projection at " + std::to_string(std::sqrt(t) * 180 / kPi) + " degrees", slope,
         "at least 0.001 up to max_theta_rad");
-  return {};
+  return check_zenith(lens.zenith);
+}
+
+// The least slope up to an angle falls with that angle.
+double increasing_to_rad(const Lens& lens) {
+  double lo = 0, hi = kPi;
+  if (least_slope(lens, hi).second >= kLeastSlope) return hi;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = (lo + hi) / 2;
+    (least_slope(lens, middle).second >= kLeastSlope ? lo : hi) = middle;
+  }
+  return lo;
 }
 
 }  // namespace lightwell

@@ -228,6 +228,7 @@ Result<LensCalibration> concluded(Solution& s, const std::optional<TargetShape>&
     if (squared >= 0 && covariance && check(out.lens)) break;
     if (selection.freedom.coefficients == 0) return undetermined;
   }
+  out.supported_theta_rad = out.lens.max_theta_rad;
   out.freedom = selection.freedom;
   out.held_out_rms_px = out.freedom.coefficients == selected ? selection.held_out_rms_px
                                                              : held_out_rms_px(out.lens, views, out.freedom);
@@ -313,6 +314,18 @@ Result<LensCalibration> calibrate_lens(const TargetViews& target_views, TargetTr
     out->views.push_back(result_of(out->lens, known ? s.judged[next++] : few, kGate * s.noise_px));
   }
   return out;
+}
+
+Status set_field(LensCalibration& calibration, double max_theta_rad) {
+  const double limit = increasing_to_rad(calibration.lens);
+  if (!(max_theta_rad > 0 && max_theta_rad <= limit))
+    return Error{ErrorKind::bad_input,
+                 "a field to " +
+                     text("%.1f degrees, allowed above 0, at most %.1f", max_theta_rad * 180 / kPi,
+                          std::floor(limit * 1800 / kPi) / 10) +
+                     ": beyond it the projection of this lens stops growing"};
+  calibration.lens.max_theta_rad = max_theta_rad;
+  return {};
 }
 
 ViewResult fit_view(const Lens& lens, const TargetView& view) {

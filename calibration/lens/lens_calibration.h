@@ -26,12 +26,16 @@ struct ViewResult {
 };
 
 struct LensCalibration {
-  Lens lens;  // max_theta_rad: the largest angle of a point that counts
+  Lens lens;  // max_theta_rad: supported_theta_rad, until set_field says otherwise
+  double supported_theta_rad =
+      0;  // the largest angle of a point that counts; beyond it the lens is extrapolated
   LensFreedom freedom;
   Eigen::Matrix<double, 8, 8> covariance;  // fx, fy, cx, cy, k1 … k4; zero rows for what is held
   double rms_px = 0;                       // √mean(du² + dv²) over the points that count
-  // The same for views held out, a lens of this freedom fitted to the others; infinite where too few are left to fit
-  // one to.
+  // The same for views held out, in at most five parts, each once: a lens of this freedom fitted to the others, the
+  // held view's pose alone to its own points. Which points count, the board's shape, the aspect and the number of
+  // coefficients were chosen with all views, the held ones too: the choice among four numbers of coefficients is in it.
+  // Infinite where too few are left to fit a lens to.
   double held_out_rms_px = 0;
   double noise_px = 0;               // standard deviation of a coordinate, degrees of freedom counted
   std::vector<ViewResult> views;     // in the order given
@@ -49,6 +53,10 @@ struct LensCalibration {
 enum class TargetTrust { exact, printed };
 Result<LensCalibration> calibrate_lens(const TargetViews& target_views,
                                        TargetTrust trust = TargetTrust::exact);
+
+// Ends the lens's field at an angle, nearer than the points reach or farther. bad_input, with the limit, where the
+// projection stops growing before; the calibration is then as it was.
+Status set_field(LensCalibration& calibration, double max_theta_rad);
 
 // Pose alone, the lens held: what a test view says of a lens. used is false where no pose is found.
 ViewResult fit_view(const Lens& lens, const TargetView& view);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibration/lens/lens_report.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "calibration/lens/field_coverage.h"
@@ -45,7 +46,10 @@ ordered_json view_json(const ViewResult& result, const TargetView& view) {
 }
 
 ordered_json uncertainty_json(const LensCalibration& calibration) {
-  const ProjectionUncertainty uncertainty(calibration.lens, calibration.covariance);
+  // The turn that is taken out is that of the field that the points support, not of its extrapolation.
+  Lens supported = calibration.lens;
+  supported.max_theta_rad = std::min(supported.max_theta_rad, calibration.supported_theta_rad);
+  const ProjectionUncertainty uncertainty(supported, calibration.covariance);
   constexpr int kRings = 24, kSectors = 24;
   ordered_json theta = ordered_json::array(), azimuth = ordered_json::array(), sigma = ordered_json::array();
   double largest = 0;
@@ -75,6 +79,8 @@ ordered_json lens_report(const LensCalibration& calibration, const TargetViews& 
   ordered_json out;
   for (const char* key : {"schema", "model", "image_size", "focal", "center", "k", "max_theta_deg"})
     out[key] = lens.at(key);
+  out["supported_theta_deg"] = calibration.supported_theta_rad * kDegreesPerRadian;
+  if (lens.contains("zenith")) out["zenith"] = lens.at("zenith");
   ordered_json covariance = ordered_json::array();
   for (Eigen::Index r = 0; r < 8; ++r) {
     ordered_json row = ordered_json::array();

@@ -11,7 +11,8 @@ namespace lightwell::calibration {
 // How much of the model the data support.
 struct LensSelection {
   LensFreedom freedom;
-  double held_out_rms_px = 0;  // √mean(du² + dv²) of views that were not fitted to, their poses alone
+  // √mean(du² + dv²) of views that were not fitted to, their poses alone. The coefficients were chosen by this number.
+  double held_out_rms_px = 0;
 };
 
 // Whether the views ask for the board's shape: by the corrected Akaike criterion. views: with the points of the square

@@ -106,14 +106,27 @@ double covered_deg(const json& coverage) {
   return covered;
 }
 
+// What an import says of itself.
+std::string import_sentence(const json& imported) {
+  if (!is_number(imported, "rms_px") || !is_number(imported, "max_px")) return "";
+  return " Imported from " + escaped(imported.value("format", std::string())) + " (" +
+         escaped(imported.value("model", std::string())) + "); the conversion is off by " +
+         formatted("%.3g px rms, ", imported.at("rms_px").get<double>()) +
+         formatted("%.3g px at most.", imported.at("max_px").get<double>());
+}
+
 }  // namespace
 
 ReportSection lens_section(const Lens& lens, const json& file) {
   ReportSection out;
   const double max_deg = lens.max_theta_rad * 180 / kPi;
-  out.html = "<h2>Lens</h2><p>Kannala–Brandt to " + formatted("%.1f°", max_deg) + " off axis, focal " +
-             formatted("%.2f", lens.focal.x()) + " / " + formatted("%.2f px", lens.focal.y()) + ", centre " +
-             formatted("%.2f", lens.center.x()) + " / " + formatted("%.2f", lens.center.y()) + ".";
+  out.html = "<h2>Lens</h2><p>Kannala–Brandt to " + formatted("%.1f°", max_deg) + " off axis, " +
+             (is_number(file, "supported_theta_deg") && file.at("supported_theta_deg").get<double>() < max_deg
+                  ? formatted("extrapolated beyond %.1f°, ", file.at("supported_theta_deg").get<double>())
+                  : "") +
+             "focal " + formatted("%.2f", lens.focal.x()) + " / " + formatted("%.2f px", lens.focal.y()) +
+             ", centre " + formatted("%.2f", lens.center.x()) + " / " + formatted("%.2f", lens.center.y()) +
+             ".";
   if (is_number(file, "rms_px")) {
     out.html += " Residual " + formatted("%.3f px rms", file.at("rms_px").get<double>());
     const bool held_out = is_number(file, "held_out_rms_px");
@@ -125,6 +138,8 @@ ReportSection lens_section(const Lens& lens, const json& file) {
   } else {
     out.warning = "the lens says nothing about its error. ";
   }
+  if (file.contains("imported") && file.at("imported").is_object())
+    out.html += import_sentence(file.at("imported"));
   out.html += "</p>";
   if (file.contains("coverage") || file.contains("projection_uncertainty")) {
     out.html += "<div class=\"row\">";

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "lighting/orientation.h"
+
 namespace lightwell::radiometer {
 namespace {
 
@@ -119,7 +121,12 @@ void split_groups(PixelBins& bins) {
 
 Result<PixelBins> bin_pixels(const Lens& lens_of_camera, const PolarGrid& grid, bool quads) {
   Lens lens = lens_of_camera;
-  lens.max_theta_rad = std::min(lens.max_theta_rad, grid.theta_max_rad);
+  const Eigen::Matrix3d world_from_camera = world_from_camera_rotation(lens.zenith);
+  // The border of a level camera's grid is a circle in its image, and cuts pixels as the lens's own does; that of a
+  // tilted one takes or leaves them whole.
+  const bool level = lens.zenith == Vec3d::UnitZ();
+  if (level) lens.max_theta_rad = std::min(lens.max_theta_rad, grid.theta_max_rad);
+  const double lowest = std::cos(grid.theta_max_rad);
   const int step = quads ? 2 : 1;
   PixelBins bins;
   bins.width = (lens.image_size[0] + step - 1) / step;
@@ -135,7 +142,9 @@ Result<PixelBins> bin_pixels(const Lens& lens_of_camera, const PolarGrid& grid, 
       const auto omega = static_cast<float>(solid_angle(lens, x, y, quads));
       // A sliver of the border this thin is rounding of the quadrature, below a photon's worth of any pixel.
       if (!(omega > 1e-12f)) continue;
-      const std::uint32_t bin = bin_of(grid, world_from_camera(lens.unproject(centre(lens, x, y, quads))));
+      const Vec3d world = world_from_camera * lens.unproject(centre(lens, x, y, quads));
+      if (!level && world.y() < lowest) continue;
+      const std::uint32_t bin = bin_of(grid, world);
       bins.group[sample] = bin;
       bins.solid_angle_sr[sample] = omega;
       bins.bin_sr[bin] += static_cast<double>(omega);
@@ -150,7 +159,7 @@ Result<PixelBins> bin_pixels(const Lens& lens_of_camera, const PolarGrid& grid, 
       const auto sectors = static_cast<std::uint32_t>(grid.sectors);
       const Vec3d world =
           grid.bin_direction(static_cast<int>(bin / sectors), static_cast<int>(bin % sectors));
-      bins.nearest[bin] = nearest_sample(bins, lens, camera_from_world(world), quads);
+      bins.nearest[bin] = nearest_sample(bins, lens, world_from_camera.transpose() * world, quads);
     }
   spread_nearest(grid, own, bins.nearest);
   split_groups(bins);

@@ -174,6 +174,31 @@ TEST_F(LensCommand, APictureWithANameThatIsNotUtf8Counts) {
   EXPECT_THAT(json::parse(run.out)["views"][0]["name"].get<std::string>(), HasSubstr("\xEF\xBF\xBD"));
 }
 
+TEST_F(LensCommand, FieldAndGravityAreTakenAndRefusedByRange) {
+  Lens lens{{640, 640}, {180, 180}, {330, 310}, {0, 0, 0, 0}, 1.3};
+  test::BoardSetup setup;
+  setup.field_rad = lens.max_theta_rad;
+  setup.views = 10;
+  setup.columns = setup.rows = 7;
+  ASSERT_TRUE(write_file_atomically(path("corners.json"),
+                                    calibration::to_json(test::board_views(lens, setup).target_views)));
+  const ProcessResult run =
+      calibrate({"--corners", path("corners.json"), "--max-theta", "85", "--gravity", "0.5,-1.5,9.6"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("85.0 degrees off axis, extrapolated beyond 7"));
+  const json file = json::parse(read_text_file(path("lens.json")).value());
+  EXPECT_NEAR(file["max_theta_deg"], 85, 1e-9);
+  EXPECT_LT(file["supported_theta_deg"], 75);
+  const auto read = read_lens(path("lens.json"));
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_LT((read->zenith - Vec3d(0.5, -1.5, 9.6).normalized()).norm(), 1e-12);
+  expect_refused({"--corners", path("corners.json"), "--max-theta", "0"}, 2, "--max-theta");
+  expect_refused({"--corners", path("corners.json"), "--max-theta", "181"}, 2, "--max-theta");
+  expect_refused({"--corners", path("corners.json"), "--gravity", "0,0,0"}, 2, "--gravity");
+  expect_refused({"--corners", path("corners.json"), "--gravity", "1,2"}, 2, "--gravity");
+  expect_refused({"--corners", path("corners.json"), "--gravity", "1,2,x"}, 2, "--gravity");
+}
+
 TEST_F(LensCommand, AFolderThatIsMissingIsAFailure) {
   Lens lens{{640, 640}, {180, 180}, {330, 310}, {0, 0, 0, 0}, kPi / 2};
   ASSERT_TRUE(write_file_atomically(path("corners.json"),

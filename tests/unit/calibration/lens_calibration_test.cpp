@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibration/lens/lens_report.h"
 #include "calibration/lens/lens_selection.h"
 #include "calibration/lens/lens_start.h"
 #include "tests/support/board_views.h"
@@ -208,6 +209,46 @@ TEST(LensCalibration, TheHeldOutErrorIsOfTheLensThatIsReturned) {
     EXPECT_NEAR(found->held_out_rms_px / held_out_rms_px(found->lens, posed, found->freedom), 1, 1e-3)
         << name;
   }
+}
+
+TEST(LensCalibration, AFieldBeyondThePointsIsExtrapolatedAndSaidToBe) {
+  const Lens lens = lens_of(180, 150, {-0.02, 0.004, -0.001, 0.0001});
+  test::BoardSetup setup = setup_of(lens);
+  setup.field_rad = 80 * kPi / 180;
+  setup.views = 12;
+  const TargetViews views = test::board_views(lens, setup).target_views;
+  auto found = calibrate_lens(views);
+  ASSERT_TRUE(found.ok()) << found.error().message;
+  const double supported = found->supported_theta_rad;
+  EXPECT_EQ(found->lens.max_theta_rad, supported);
+  EXPECT_LT(supported, 80.1 * kPi / 180);
+  const auto narrow = lens_report(*found, views);
+  const double field = 90 * kPi / 180;
+  ASSERT_TRUE(set_field(*found, field));
+  EXPECT_EQ(found->lens.max_theta_rad, field);
+  EXPECT_EQ(found->supported_theta_rad, supported);
+  const auto wide = lens_report(*found, views);
+  EXPECT_NEAR(wide["max_theta_deg"], 90, 1e-9);
+  EXPECT_NEAR(wide["supported_theta_deg"], supported * 180 / kPi, 1e-9);
+  const auto& map = wide["projection_uncertainty"];
+  EXPECT_NEAR(map["theta_deg"].back(), 90, 1e-9);
+  // Where there are points the map says what it said; beyond them it grows.
+  EXPECT_NEAR(map["sigma_px"][0][0], narrow["projection_uncertainty"]["sigma_px"][0][0], 1e-12);
+  EXPECT_GT(map["largest_sigma_px"],
+            1.2 * narrow["projection_uncertainty"]["largest_sigma_px"].get<double>());
+  EXPECT_THAT(coverage_gaps(*found, views), HasSubstr("80 to 90 degrees off axis: azimuth"));
+}
+
+TEST(LensCalibration, AFieldBeyondWhereTheProjectionGrowsIsRefusedWithTheLimit) {
+  LensCalibration calibration;
+  calibration.lens.k = {-0.12, 0, 0, 0};  // 1 - 0.36 θ² = 0.001 at 95.4 degrees
+  calibration.lens.max_theta_rad = calibration.supported_theta_rad = 1;
+  const Status refused = set_field(calibration, 100 * kPi / 180);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_THAT(refused.error().message, HasSubstr("at most 95.4"));
+  EXPECT_EQ(calibration.lens.max_theta_rad, 1);
+  EXPECT_TRUE(set_field(calibration, 95.4 * kPi / 180).ok());
+  EXPECT_FALSE(set_field(calibration, std::nan("")).ok());
 }
 
 TEST(LensCalibration, OnePlaceAtTheEndOfTheWorldIsLeftOut) {

@@ -29,6 +29,7 @@ Calibration example() {
   c.lens.center = {15.3, 8.1};
   c.lens.k = {-0.02, 0.003, 1e-4, -1e-5};
   c.lens.max_theta_rad = 1.5;
+  c.lens.zenith = Vec3d(0.1, -0.2, 0.9).normalized();
   c.flat.image_size = c.lens.image_size;
   c.flat.vignetting = {-0.1, 0.01, -0.001};
   std::mt19937 random(1);
@@ -52,6 +53,7 @@ void expect_same(const Calibration& a, const Calibration& b) {
   EXPECT_EQ(a.lens.focal, b.lens.focal);
   EXPECT_EQ(a.lens.center, b.lens.center);
   EXPECT_EQ(a.lens.k, b.lens.k);
+  EXPECT_EQ(a.lens.zenith, b.lens.zenith);
   EXPECT_NEAR(a.lens.max_theta_rad, b.lens.max_theta_rad,
               1e-15);  // radians to degrees and back: one rounding
   EXPECT_EQ(a.flat.vignetting, b.flat.vignetting);
@@ -146,6 +148,8 @@ TEST(CalibrationIo, IdTellsAnyChangeOfContent) {
   EXPECT_TRUE(differs([](Calibration& c) { c.response.bits = 11; }));
   EXPECT_TRUE(differs([](Calibration& c) { c.lens.k[3] += 1e-9; }));
   EXPECT_TRUE(differs([](Calibration& c) { c.lens.max_theta_rad += 1e-6; }));
+  EXPECT_TRUE(differs([](Calibration& c) { c.lens.zenith = Vec3d(0.1, -0.2, 0.91).normalized(); }));
+  EXPECT_TRUE(differs([](Calibration& c) { c.lens.zenith = Vec3d::UnitZ(); }));
   EXPECT_TRUE(differs([](Calibration& c) { c.flat.vignetting[1] += 1e-9; }));
   EXPECT_TRUE(differs([](Calibration& c) { c.flat.offset_codes[5] += 0.01f; }));
   EXPECT_TRUE(differs([](Calibration& c) { c.rec709_from_camera(2, 1) += 1e-9; }));
@@ -194,35 +198,37 @@ TEST_P(WrongField, IsBadInputThatNamesFileAndField) {
 
 INSTANTIATE_TEST_SUITE_P(
     CalibrationIo, WrongField,
-    testing::Values(Wrong{"response.json", "/schema", "\"lightwell.response/2\"", "schema"},
-                    Wrong{"response.json", "/model", "\"cubic\"", "model"},
-                    Wrong{"response.json", "/parameters", "[1,2]", "parameters"},
-                    Wrong{"response.json", "/model", "\"linlog\"", "parameters.black"},
-                    Wrong{"response.json", "/model", "\"pwl\"", "parameters.code"},
-                    Wrong{"response.json", "/parameters/b", "-1", "b = -1"},
-                    Wrong{"response.json", "/parameters/a", "\"x\"", "parameters.a"},
-                    Wrong{"response.json", "/bits", "12.5", "bits"},
-                    Wrong{"response.json", "/bits", "17", "bits"},
-                    Wrong{"response.json", "/clip_code", "5000", "clip_code"},
-                    Wrong{"response.json", "/black_code", "null", "black_code"},
-                    Wrong{"response.json", "/reference_exposure_us", "0", "reference_exposure_us"},
-                    Wrong{"response.json", "/table/code", "[1,2]", "luminance_cd_m2"},
-                    Wrong{"response.json", "/table/luminance_cd_m2/1", "-5", "luminance_cd_m2"},
-                    Wrong{"response.json", "/rec709_from_camera/1", "[1,2]", "rec709_from_camera"},
-                    Wrong{"lens.json", "/schema", "7", "schema"},
-                    Wrong{"lens.json", "/image_size", "[640]", "image_size"},
-                    Wrong{"lens.json", "/image_size/0", "0", "image_size[0]"},
-                    Wrong{"lens.json", "/image_size/1", "1e300", "image_size[1]"},
-                    Wrong{"lens.json", "/focal/1", "-3", "focal[1]"},
-                    Wrong{"lens.json", "/center/0", "\"c\"", "center[0]"},
-                    Wrong{"lens.json", "/k", "{}", "k"}, Wrong{"lens.json", "/k/0", "-9", "k"},
-                    Wrong{"lens.json", "/max_theta_deg", "181", "max_theta_deg"},
-                    Wrong{"flat.json", "/schema", "\"\"", "schema"},
-                    Wrong{"flat.json", "/image_size/0", "30", "offset_codes.data"},
-                    Wrong{"flat.json", "/vignetting/0", "-5", "vignetting"},
-                    Wrong{"flat.json", "/offset_codes/encoding", "\"raw\"", "encoding"},
-                    Wrong{"flat.json", "/offset_codes/scale", "0", "scale"},
-                    Wrong{"flat.json", "/offset_codes/data", "\"!!!!\"", "data"}));
+    testing::Values(
+        Wrong{"response.json", "/schema", "\"lightwell.response/2\"", "schema"},
+        Wrong{"response.json", "/model", "\"cubic\"", "model"},
+        Wrong{"response.json", "/parameters", "[1,2]", "parameters"},
+        Wrong{"response.json", "/model", "\"linlog\"", "parameters.black"},
+        Wrong{"response.json", "/model", "\"pwl\"", "parameters.code"},
+        Wrong{"response.json", "/parameters/b", "-1", "b = -1"},
+        Wrong{"response.json", "/parameters/a", "\"x\"", "parameters.a"},
+        Wrong{"response.json", "/bits", "12.5", "bits"}, Wrong{"response.json", "/bits", "17", "bits"},
+        Wrong{"response.json", "/clip_code", "5000", "clip_code"},
+        Wrong{"response.json", "/black_code", "null", "black_code"},
+        Wrong{"response.json", "/reference_exposure_us", "0", "reference_exposure_us"},
+        Wrong{"response.json", "/table/code", "[1,2]", "luminance_cd_m2"},
+        Wrong{"response.json", "/table/luminance_cd_m2/1", "-5", "luminance_cd_m2"},
+        Wrong{"response.json", "/rec709_from_camera/1", "[1,2]", "rec709_from_camera"},
+        Wrong{"lens.json", "/schema", "7", "schema"},
+        Wrong{"lens.json", "/image_size", "[640]", "image_size"},
+        Wrong{"lens.json", "/image_size/0", "0", "image_size[0]"},
+        Wrong{"lens.json", "/image_size/1", "1e300", "image_size[1]"},
+        Wrong{"lens.json", "/focal/1", "-3", "focal[1]"},
+        Wrong{"lens.json", "/center/0", "\"c\"", "center[0]"}, Wrong{"lens.json", "/k", "{}", "k"},
+        Wrong{"lens.json", "/k/0", "-9", "k"}, Wrong{"lens.json", "/max_theta_deg", "181", "max_theta_deg"},
+        Wrong{"lens.json", "/zenith", "[0,0,2]", "zenith[2]"},
+        Wrong{"lens.json", "/zenith", "[0,0,0.5]", "zenith: length"},
+        Wrong{"lens.json", "/zenith", "[0,0,-1]", "straight down"},
+        Wrong{"lens.json", "/zenith", "[0,1]", "zenith"}, Wrong{"flat.json", "/schema", "\"\"", "schema"},
+        Wrong{"flat.json", "/image_size/0", "30", "offset_codes.data"},
+        Wrong{"flat.json", "/vignetting/0", "-5", "vignetting"},
+        Wrong{"flat.json", "/offset_codes/encoding", "\"raw\"", "encoding"},
+        Wrong{"flat.json", "/offset_codes/scale", "0", "scale"},
+        Wrong{"flat.json", "/offset_codes/data", "\"!!!!\"", "data"}));
 
 TEST(CalibrationIo, PiecewiseLinearPointsThatDoNotIncreaseOrPairAreBadInput) {
   Calibration c = example();

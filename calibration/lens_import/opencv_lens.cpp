@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "calibration/lens_import/source_formats.h"
+
+namespace lightwell::calibration {
+namespace {
+
+// The first of the names that the file has; the first of all where it has none, for the message.
+std::string present(const JsonFields& fields, const std::vector<const char*>& names) {
+  for (const char* name : names)
+    if (fields.has(name)) return name;
+  return names[0];
+}
+
+// Numbers of a matrix: {rows, cols, data}, a list, or a list of rows.
+std::vector<double> matrix_numbers(const JsonFields& fields, const std::string& key) {
+  if (!fields.has(key)) fields.fail(key, "is missing");
+  if (fields.is_object(key)) return fields.object(key).number_list("data");
+  if (!fields.holds_lists(key)) return fields.number_list(key);
+  std::vector<double> out;
+  for (const auto& row : fields.lists(key)) out.insert(out.end(), row.begin(), row.end());
+  return out;
+}
+
+PinholePlane camera_matrix(const JsonFields& fields) {
+  const std::string key = present(fields, {"camera_matrix", "K", "cameraMatrix", "Camera_Matrix",
+                                           "CameraMatrix", "intrinsic_matrix", "mtx"});
+  const std::vector<double> m = matrix_numbers(fields, key);
+  if (m.size() != 9)
+    fields.fail(key, "has " + std::to_string(m.size()) + " numbers: allowed 9, of a 3x3 matrix");
+  if (m[1] != 0)
+    fields.fail(key, "[0][1] = " + std::to_string(m[1]) + ": allowed 0, this lens model has no skew");
+  constexpr std::pair<std::size_t, double> kFixed[] = {{3, 0}, {6, 0}, {7, 0}, {8, 1}};
+  for (const auto& [i, value] : kFixed)
+    if (m[i] != value)
+      fields.fail(key, "[" + std::to_string(i / 3) + "][" + std::to_string(i % 3) +
+                           "] = " + std::to_string(m[i]) + ": allowed " +
+                           std::to_string(static_cast<int>(value)) + " in a camera matrix");
+  return pinhole_plane(fields, key, m[0], m[4], m[2], m[5]);
+}
+
+std::vector<double> coefficients(const JsonFields& fields, const std::string& of_model) {
+  const std::string key =
+      present(fields, {"distortion_coefficients", "D", "distCoeffs", "Distortion_Coefficients", "dist_coeffs",
+                       "distortion_coeffs", "DistCoeffs", "dist"});
+  std::vector<double> d = matrix_numbers(fields, key);
+  if (d.size() != 4)
+    fields.fail(key, "has " + std::to_string(d.size()) + " numbers: allowed 4, those of " + of_model);
+  return d;
+}
+
+std::array<int, 2> image_size(const JsonFields& fields) {
+  for (const char* key : {"image_size", "imageSize", "img_size", "DIM", "dim", "resolution", "size"}) {
+    if (!fields.has(key)) continue;
+    const std::vector<double> size = matrix_numbers(fields, key);
+    if (size.size() != 2)
+      fields.fail(key, "has " + std::to_string(size.size()) + " numbers: allowed 2, [w, h]");
+    return {image_side(fields, std::string(key) + "[0]", size[0]),
+            image_side(fields, std::string(key) + "[1]", size[1])};
+  }
+  const auto side = [&](const std::vector<const char*>& names) {
+    const std::string key = present(fields, names);
+    return image_side(fields, key, fields.number(key));
+  };
+  return {side({"image_width", "image_Width", "imageWidth", "width"}),
+          side({"image_height", "image_Height", "imageHeight", "height"})};
+}
+
+// A file that names another model is not read as a fisheye's.
+void check_model(const JsonFields& fields) {
+  const auto allow = [&](const char* key, std::initializer_list<std::string_view> models) {
+    if (!fields.has(key)) return;
+    std::string model = fields.text(key);
+    std::transform(model.begin(), model.end(), model.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (std::find(models.begin(), models.end(), model) == models.end())
+      fields.fail(key, "= \"" + model + "\": allowed equidistant, fisheye, kannala_brandt");
+  };
+  for (const char* key : {"distortion_model", "model", "projection_model", "model_type"})
+    allow(key, {"equidistant", "fisheye", "kannala_brandt", "kannala-brandt", "kannalabrandt", "kb4",
+                "opencv_fisheye", "omnidir"});
+  allow("camera_model", {"pinhole", "equidistant", "fisheye", "kannala_brandt", "kannala-brandt",
+                         "opencv_fisheye", "omnidir"});
+  for (const char* key : {"fisheye_model", "fisheye"})
+    if (fields.has(key) && fields.is_number(key) && fields.number(key) != 1)
+      fields.fail(key, "= " + std::to_string(static_cast<int>(fields.number(key))) +
+                           ": allowed 1: the coefficients are those of a perspective lens");
+  for (const char* key : {"alpha", "skew"})
+    if (fields.has(key) && fields.number(key) != 0)
+      fields.fail(key,
+                  "= " + std::to_string(fields.number(key)) + ": allowed 0, this lens model has no skew");
+}
+
+}  // namespace
+
+SourceLens opencv_lens(const JsonFields& root) {
+  check_model(root);
+  SourceLens out;
+  out.format = LensFormat::opencv;
+  const PinholePlane plane = camera_matrix(root);
+  const bool omnidir = root.has("xi");
+  const std::vector<double> d = coefficients(root, omnidir ? "cv::omnidir" : "cv::fisheye");
+  out.image_size = image_size(root);
+  if (omnidir) {
+    const std::vector<double> xi =
+        root.is_number("xi") ? std::vector<double>{root.number("xi")} : matrix_numbers(root, "xi");
+    if (xi.size() != 1 || !(xi[0] >= 0 && xi[0] <= 100)) root.fail("xi", "is not one number from 0 to 100");
+    out.model = "cv::omnidir";
+    out.project = omnidirectional(plane, xi[0], {d[0], d[1], d[2], d[3]});
+    return out;
+  }
+  out.model = "cv::fisheye";
+  const std::array<double, 4> k = {d[0], d[1], d[2], d[3]};
+  out.project = equidistant(plane, k);
+  out.same = Lens{out.image_size, plane.focal, plane.center, k, kPi};
+  return out;
+}
+
+}  // namespace lightwell::calibration

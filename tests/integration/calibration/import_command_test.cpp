@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "interface/atomic_file.h"
+#include "interface/calibration_io.h"
+#include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace lightwell {
+namespace {
+
+using nlohmann::json;
+using test::ProcessResult;
+using testing::HasSubstr;
+
+const std::string kCamera =
+    "cam0:\n  camera_model: pinhole\n  intrinsics: [285.5, 286.5, 421.25, 398.75]\n"
+    "  distortion_model: equidistant\n  distortion_coeffs: [-0.0031, 0.0412, -0.0384, 0.0067]\n"
+    "  resolution: [848, 800]\n";
+
+// `lightwell calibrate import` and `orient`, whose output is lens.json.
+class ImportCommand : public testing::Test {
+ protected:
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  std::string file(const std::string& name, const std::string& text) const {
+    EXPECT_TRUE(write_file_atomically(path(name), text));
+    return path(name);
+  }
+  ProcessResult calibrate(std::vector<std::string> words) const {
+    words.insert(words.begin(), "calibrate");
+    words.insert(words.end(), {"--out", path("lens.json")});
+    return test::run_process(LIGHTWELL_BIN_DIR "/lightwell", words);
+  }
+  void expect_refused(const std::vector<std::string>& words, int code, const std::string& names) const {
+    ASSERT_TRUE(write_file_atomically(path("lens.json"), "before"));
+    const ProcessResult run = calibrate(words);
+    EXPECT_EQ(run.exit_code, code) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(names));
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(read_text_file(path("lens.json")).value(), "before");
+  }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ImportCommand, WritesTheLensWithTheConversionsError) {
+  const std::string camera = file("camchain.yaml", kCamera);
+  const ProcessResult run = calibrate({"import", camera, "--max-theta", "80", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  const json report = json::parse(run.out);
+  EXPECT_EQ(report["imported"]["format"], "kalibr");
+  EXPECT_EQ(report["imported"]["model"], "pinhole-equidistant");
+  EXPECT_EQ(report["imported"]["exact"], true);
+  for (const char* key : {"rms_px", "max_px", "rms_deg", "max_deg", "max_at_deg", "directions", "weighting"})
+    EXPECT_TRUE(report["imported"].contains(key)) << key;
+  EXPECT_EQ(json::parse(read_text_file(path("lens.json")).value()), report);
+  const auto lens = read_lens(path("lens.json"));
+  ASSERT_TRUE(lens.ok()) << lens.error().message;
+  EXPECT_EQ(lens->focal, Vec2d(285.5, 286.5));
+  EXPECT_NEAR(lens->max_theta_rad, 80 * kPi / 180, 1e-12);
+  const ProcessResult text = calibrate({"import", camera, "--format", "kalibr", "--camera", "cam0"});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("conversion        exact"));
+}
+
+TEST_F(ImportCommand, RefusesInOneLineAndWritesNothing) {
+  const std::string camera = file("camchain.yaml", kCamera);
+  expect_refused({"import", path("absent.yaml")}, 3, "absent.yaml");
+  expect_refused({"import", file("bad.yaml", kCamera + "  : [")}, 3, "bad.yaml");
+  expect_refused({"import", camera, "--camera", "cam9"}, 2, "cam0");
+  expect_refused({"import", camera, "--format", "colmap"}, 2, "--format");
+  expect_refused({"import", camera, "--max-theta", "181"}, 2, "--max-theta");
+  expect_refused({"import", camera, "--max-theta", "170"}, 2, "allowed at most");
+  expect_refused({"import", camera, "--gravity", "0,0"}, 2, "--gravity");
+  expect_refused({"import", camera, "--gravity", "0,0,-9.8"}, 2, "straight down");
+}
+
+TEST_F(ImportCommand, OrientKeepsWhatStandsInTheFileAndTurnsTheWorld) {
+  const std::string camera = file("camchain.yaml", kCamera);
+  ASSERT_EQ(calibrate({"import", camera, "--max-theta", "80"}).exit_code, 0);
+  const json before = json::parse(read_text_file(path("lens.json")).value());
+  // In place: the output may be the input.
+  const ProcessResult run = calibrate({"orient", path("lens.json"), "--gravity", "-1.7,0,9.66", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NEAR(json::parse(run.out)["tilt_deg"], std::atan2(1.7, 9.66) * 180 / kPi, 1e-9);
+  json after = json::parse(read_text_file(path("lens.json")).value());
+  const auto lens = read_lens(path("lens.json"));
+  ASSERT_TRUE(lens.ok()) << lens.error().message;
+  EXPECT_LT((lens->zenith - Vec3d(-1.7, 0, 9.66).normalized()).norm(), 1e-12);
+  after.erase("zenith");
+  EXPECT_EQ(after, before);
+  // Back to level: a file like that of a camera whose gravity was never known.
+  ASSERT_EQ(calibrate({"orient", path("lens.json"), "--gravity", "0,0,1"}).exit_code, 0);
+  EXPECT_EQ(json::parse(read_text_file(path("lens.json")).value()), before);
+  expect_refused({"orient", file("none.json", "{}"), "--gravity", "0,0,1"}, 3, "none.json");
+  expect_refused({"orient", path("absent.json"), "--gravity", "0,0,1"}, 3, "absent.json");
+}
+
+}  // namespace
+}  // namespace lightwell
