@@ -78,7 +78,9 @@ TEST_F(ImportCommand, RefusesInOneLineAndWritesNothing) {
   expect_refused({"import", camera, "--camera", "cam9"}, 2, "cam0");
   expect_refused({"import", camera, "--format", "colmap"}, 2, "--format");
   expect_refused({"import", camera, "--max-theta", "181"}, 2, "--max-theta");
-  expect_refused({"import", camera, "--max-theta", "170"}, 2, "allowed at most");
+  std::string bent = kCamera;
+  bent.replace(bent.find("[-0.0031, 0.0412, -0.0384, 0.0067]"), 34, "[-0.12, 0, 0, 0]");
+  expect_refused({"import", file("bent.yaml", bent), "--max-theta", "100"}, 2, "allowed at most 95.");
   expect_refused({"import", camera, "--gravity", "0,0"}, 2, "--gravity");
   expect_refused({"import", camera, "--gravity", "0,0,-9.8"}, 2, "straight down");
 }

@@ -86,8 +86,7 @@ TEST(CalibrationIo, RoundTripThroughTheAttachmentKeepsEveryFieldAndTheId) {
 }
 
 TEST(CalibrationIo, LinearResponseAndNoFixedPatternSurvive) {
-  Calibration c;
-  c.response.model = LinearResponse{12, 0.25};
+  const Calibration c{.response = {.model = LinearResponse{12, 0.25}}};
   const auto read = calibration_from_json(calibration_to_json(c), "x");
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(std::get<LinearResponse>(read->response.model).gain, 0.25);
