@@ -86,7 +86,8 @@ TEST(CalibrationIo, RoundTripThroughTheAttachmentKeepsEveryFieldAndTheId) {
 }
 
 TEST(CalibrationIo, LinearResponseAndNoFixedPatternSurvive) {
-  const Calibration c{.response = {.model = LinearResponse{12, 0.25}}};
+  const Calibration c{
+      {LinearResponse{12, 0.25}, 12, 0, 4095, 10000}, {}, {}, Eigen::Matrix3d::Identity(), ""};
   const auto read = calibration_from_json(calibration_to_json(c), "x");
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(std::get<LinearResponse>(read->response.model).gain, 0.25);
