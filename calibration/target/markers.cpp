@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <map>
-#include <opencv2/aruco/charuco.hpp>
+#include <opencv2/aruco.hpp>
+#include <opencv2/imgproc.hpp>
 
 namespace lightwell::calibration {
 namespace {
@@ -36,6 +39,17 @@ Markers find_markers(const cv::Mat& grey, int dictionary, int border_bits, int c
 
 cv::Point2f centre(const std::vector<cv::Point2f>& corners) {
   return (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
+}
+
+double side_px(const std::vector<cv::Point2f>& c) {
+  return (cv::norm(c[0] - c[2]) + cv::norm(c[1] - c[3])) / (2 * std::sqrt(2.0));
+}
+
+// A fisheye bends a small tag into nearly a parallelogram; one whose outline ran together with a square at its corner
+// is none.
+bool is_whole(const std::vector<cv::Point2f>& c) {
+  constexpr double kMostOff = 0.15;  // sides; a corner at the far end of a square is 0.3 √2 off
+  return cv::norm(c[0] - c[1] + c[2] - c[3]) < kMostOff * side_px(c);
 }
 
 // How the tags lie on the grid: which corner is the first along a row, and whether rows follow each other the way
@@ -77,6 +91,88 @@ GridLayout layout_of(const Markers& tags, int columns) {
   return out;
 }
 
+// Where the markers of a ChArUco board stand: row by row in every other square, from the second of the first row on;
+// as OpenCV printed boards of even rows before version 4.6, from the first on.
+struct CharucoLayout {
+  Board board;
+  bool legacy = false;
+
+  [[nodiscard]] bool has_marker(int column, int row) const {
+    return (column + row) % 2 == (legacy && board.rows % 2 == 0 ? 0 : 1);
+  }
+  // Column and row of each marker's square, by id.
+  [[nodiscard]] std::vector<cv::Point> squares() const {
+    std::vector<cv::Point> out;
+    for (int r = 0; r < board.rows; ++r)
+      for (int c = 0; c < board.columns; ++c)
+        if (has_marker(c, r)) out.emplace_back(c, r);
+    return out;
+  }
+  // From the board, in pitches from its first corner, to the picture, near a marker.
+  [[nodiscard]] cv::Matx33d picture_from_board(cv::Point square,
+                                               const std::vector<cv::Point2f>& corners) const {
+    const auto margin = static_cast<float>((1 - board.marker_mm / board.pitch_mm) / 2);
+    const cv::Point2f near = cv::Point2f(square) + cv::Point2f(margin, margin),
+                      far = cv::Point2f(square) + cv::Point2f(1 - margin, 1 - margin);
+    const std::vector<cv::Point2f> places = {near, {far.x, near.y}, far, {near.x, far.y}};
+    return cv::getPerspectiveTransform(places, corners);
+  }
+};
+
+cv::Point2d mapped(const cv::Matx33d& h, double x, double y) {
+  const cv::Vec3d p = h * cv::Vec3d(x, y, 1);
+  return {p[0] / p[2], p[1] / p[2]};
+}
+
+// How far each marker's neighbours are from where it would have them in a layout, pitches; median.
+double disorder(const Markers& markers, const CharucoLayout& layout) {
+  const std::vector<cv::Point> squares = layout.squares();
+  std::vector<double> off;
+  for (std::size_t i = 0; i < markers.ids.size(); ++i) {
+    const cv::Point here = squares[static_cast<std::size_t>(markers.ids[i])];
+    const cv::Matx33d picture_from_board = layout.picture_from_board(here, markers.corners[i]);
+    const double pitch_px = cv::norm(mapped(picture_from_board, here.x + 1, here.y + 1) -
+                                     mapped(picture_from_board, here.x, here.y)) /
+                            std::sqrt(2.0);
+    for (std::size_t j = 0; j < markers.ids.size(); ++j) {
+      const cv::Point there = squares[static_cast<std::size_t>(markers.ids[j])];
+      if (i == j || cv::norm(there - here) > 2) continue;
+      const cv::Point2d expected = mapped(picture_from_board, there.x + 0.5, there.y + 0.5);
+      off.push_back(cv::norm(expected - cv::Point2d(centre(markers.corners[j]))) / pitch_px);
+    }
+  }
+  if (off.empty()) return std::numeric_limits<double>::max();
+  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
+  std::nth_element(off.begin(), middle, off.end());
+  return *middle;
+}
+
+// Inner corners whose two markers are both seen and agree on the place.
+std::vector<MarkerCorner> corners_between(const Markers& markers, const CharucoLayout& layout) {
+  const std::vector<cv::Point> squares = layout.squares();
+  std::map<std::pair<int, int>, cv::Matx33d> seen;  // by row and column of the square
+  for (std::size_t i = 0; i < markers.ids.size(); ++i) {
+    const cv::Point square = squares[static_cast<std::size_t>(markers.ids[i])];
+    seen[{square.y, square.x}] = layout.picture_from_board(square, markers.corners[i]);
+  }
+  std::vector<MarkerCorner> out;
+  for (int r = 1; r < layout.board.rows; ++r)
+    for (int c = 1; c < layout.board.columns; ++c) {
+      const bool falling = layout.has_marker(c - 1, r - 1);  // markers before and behind, or beside
+      const auto first = seen.find({r - 1, falling ? c - 1 : c}),
+                 second = seen.find({r, falling ? c : c - 1});
+      if (first == seen.end() || second == seen.end()) continue;
+      const cv::Point2d a = mapped(first->second, c, r), b = mapped(second->second, c, r);
+      const double pitch_px = cv::norm(mapped(first->second, c, r - 1) - a);
+      constexpr double kMostApart =
+          0.2;  // pitches: a lens bends less over one, a wrong marker is a pitch off
+      if (!(cv::norm(a - b) < kMostApart * pitch_px)) continue;
+      const double pitch_mm = layout.board.pitch_mm;
+      out.push_back({{pitch_mm * (c - 1), pitch_mm * (r - 1), 0}, cv::Point2f((a + b) / 2)});
+    }
+  return out;
+}
+
 }  // namespace
 
 std::vector<MarkerCorner> find_charuco(const cv::Mat& grey, const Board& board) {
@@ -86,25 +182,12 @@ std::vector<MarkerCorner> find_charuco(const cv::Mat& grey, const Board& board) 
                                    cv::aruco::DICT_6X6_1000, cv::aruco::DICT_ARUCO_ORIGINAL};
   const int count = board.columns * board.rows / 2;
   Markers best;
-  int dictionary = kDictionaries[0];
   for (const int d : kDictionaries)
-    if (Markers m = find_markers(grey, d, 1, count); m.ids.size() > best.ids.size()) {
-      best = std::move(m);
-      dictionary = d;
-    }
+    if (Markers m = find_markers(grey, d, 1, count); m.ids.size() > best.ids.size()) best = std::move(m);
   if (best.ids.size() < 2) return {};
-  const auto layout = cv::aruco::CharucoBoard::create(
-      board.columns, board.rows, static_cast<float>(board.pitch_mm), static_cast<float>(board.marker_mm),
-      cv::aruco::getPredefinedDictionary(dictionary));
-  std::vector<cv::Point2f> corners;
-  std::vector<int> ids;
-  cv::aruco::interpolateCornersCharuco(best.corners, best.ids, grey, layout, corners, ids);
-  std::vector<MarkerCorner> out;
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const int column = ids[i] % (board.columns - 1), row = ids[i] / (board.columns - 1);
-    out.push_back({{board.pitch_mm * column, board.pitch_mm * row, 0}, corners[i]});
-  }
-  return out;
+  const CharucoLayout today{board, false}, legacy{board, true};
+  const bool is_legacy = board.rows % 2 == 0 && disorder(best, legacy) < disorder(best, today);
+  return corners_between(best, is_legacy ? legacy : today);
 }
 
 std::vector<MarkerCorner> find_aprilgrid(const cv::Mat& grey, const Board& board) {
@@ -117,6 +200,7 @@ std::vector<MarkerCorner> find_aprilgrid(const cv::Mat& grey, const Board& board
   const GridLayout layout = layout_of(tags, board.columns);
   std::vector<MarkerCorner> out;
   for (std::size_t i = 0; i < tags.ids.size(); ++i) {
+    if (!is_whole(tags.corners[i])) continue;
     const Vec3d origin(board.pitch_mm * (tags.ids[i] % board.columns),
                        layout.row_direction * board.pitch_mm * (tags.ids[i] / board.columns), 0);
     const Vec3d places[4] = {

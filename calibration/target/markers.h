@@ -14,7 +14,8 @@ struct MarkerCorner {
   cv::Point2f pixel;
 };
 
-// Corners of the checks between ArUco markers; whichever of ArUco's usual dictionaries the picture shows.
+// Corners of the checks between ArUco markers; whichever of ArUco's usual dictionaries the picture shows, and, with even
+// rows, whichever of the two layouts that OpenCV has printed.
 std::vector<MarkerCorner> find_charuco(const cv::Mat& grey, const Board& board);
 
 // Corners of AprilTags 36h11, ids row by row from a corner of the grid, as Kalibr prints them (either row may come

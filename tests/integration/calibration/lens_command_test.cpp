@@ -10,6 +10,7 @@
 #include "calibration/lens/lens_calibration.h"
 #include "interface/atomic_file.h"
 #include "interface/calibration_io.h"
+#include "interface/jpeg.h"
 #include "tests/support/babelcalib_corners.h"
 #include "tests/support/board_views.h"
 #include "tests/support/child_process.h"
@@ -42,6 +43,8 @@ class LensCommand : public testing::Test {
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
     EXPECT_EQ(run.out, "");
     EXPECT_EQ(read_text_file(path("lens.json")).value(), "before");
+    for (const auto& entry : std::filesystem::directory_iterator(path("")))  // no temporary is left
+      EXPECT_EQ(entry.path().filename().string().find("lens.json."), std::string::npos) << entry.path();
   }
   // urban_fisheye1's pictures, empty where they are not here.
   static std::vector<std::string> urban() {
@@ -139,6 +142,55 @@ TEST_F(LensCommand, BadFilesAreNamed) {
   expect_refused({"--corners", path("absent.json")}, 3, "absent.json");
   ASSERT_TRUE(write_file_atomically(path("none.json"), "{\"image_size\":[640,480],\"views\":[]}"));
   expect_refused({"--corners", path("none.json")}, 3, "0 views");
+}
+
+TEST_F(LensCommand, BrokenPicturesAreNamed) {
+  const std::vector<std::string> files = urban();
+  if (files.size() != 15) GTEST_SKIP() << "urban_fisheye1 is not in " << kData;
+  ASSERT_TRUE(write_file_atomically(path("empty.jpg"), ""));
+  expect_refused({files[0], path("empty.jpg"), "--board", "6x8:32.5"}, 3, "empty.jpg");
+  // The first bytes of a PNG file with a header of 64 x 64 and nothing behind it.
+  ASSERT_TRUE(write_file_atomically(
+      path("cut.png"), std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x40\0\0\0\x40\x08\0\0\0\0", 29)));
+  expect_refused({files[0], path("cut.png"), "--board", "6x8:32.5"}, 3, "cut.png");
+  expect_refused({files[0], kData.string(), "--board", "6x8:32.5"}, 3, kData.string());
+  std::vector<std::uint8_t> grey(3 * 64 * 48, 128);
+  ASSERT_TRUE(write_file_atomically(path("small.jpg"), encode_jpeg(64, 48, grey, 90).value()));
+  expect_refused({files[0], path("small.jpg"), "--board", "6x8:32.5"}, 3,
+                 "small.jpg: has 64x48 pixels, allowed");
+}
+
+TEST_F(LensCommand, ViewsThatCannotTellALensAreRefusedByReason) {
+  const Lens lens{{640, 640}, {180, 180}, {330, 310}, {0, 0, 0, 0}, kPi / 2};
+  test::BoardSetup setup;
+  setup.views = 8;
+  setup.columns = setup.rows = 6;
+  const auto refused = [&](const test::BoardSetup& views, const std::string& names) {
+    ASSERT_TRUE(write_file_atomically(path("views.json"),
+                                      calibration::to_json(test::board_views(lens, views).target_views)));
+    expect_refused({"--corners", path("views.json")}, 3, names);
+  };
+  test::BoardSetup few = setup;
+  few.views = 2;
+  refused(few, "2 views");
+  test::BoardSetup central = setup;  // 60 mm of board 2 m away, all within 2 degrees of the axis
+  central.pitch_mm = 12;
+  central.distance_mm = 2000;
+  central.field_rad = 0.03;
+  refused(central, "centre");
+  // One board moved straight toward the camera: far with a long focal length looks as near with a short one.
+  calibration::TargetViews parallel{lens.image_size, {}};
+  for (const double distance : {300.0, 400.0, 500.0}) {
+    calibration::TargetView view{"at " + std::to_string(distance), {}};
+    for (int r = 0; r < 6; ++r)
+      for (int c = 0; c < 6; ++c) {
+        const Vec3d p(30.0 * (c - 2.5), 30.0 * (r - 2.5), 0);
+        view.points.push_back({p, lens.project(p + Vec3d(0, 0, distance))});
+      }
+    parallel.views.push_back(view);
+  }
+  ASSERT_TRUE(write_file_atomically(path("parallel.json"), calibration::to_json(parallel)));
+  expect_refused({"--corners", path("parallel.json")}, 3, "parallel");
 }
 
 TEST_F(LensCommand, ANumberOutOfRangeIsOneLineWithItsPlace) {
