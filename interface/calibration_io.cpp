@@ -212,6 +212,7 @@ std::string calibration_id(const Calibration& calibration) {
   for (const double v : calibration.flat.vignetting) digest.add(v);
   // As a file holds them, so that what was written and read back is the same calibration.
   for (const float v : as_stored(calibration.flat.offset_codes)) digest.add(static_cast<double>(v));
+  for (const float v : as_stored(calibration.flat.gain)) digest.add(static_cast<double>(v));
   for (Eigen::Index i = 0; i < 9; ++i) digest.add(calibration.rec709_from_camera(i / 3, i % 3));
   return digest.hex();
 }

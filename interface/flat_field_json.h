@@ -15,7 +15,7 @@ namespace lightwell {
 nlohmann::json flat_field_to_json(const FlatField& flat);
 FlatField flat_field_from_json(const JsonFields& fields);
 
-// Offsets as a file holds them: what writing and reading back gives.
-std::vector<float> as_stored(const std::vector<float>& offset_codes);
+// Values as a file holds them: what writing and reading back gives.
+std::vector<float> as_stored(const std::vector<float>& values);
 
 }  // namespace lightwell

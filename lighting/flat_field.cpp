@@ -26,6 +26,13 @@ Status check(const FlatField& flat, const Lens& lens) {
     if (!(std::abs(flat.offset_codes[i]) <= 65535))
       return field_error("flat.offset_codes[" + std::to_string(i) + "]",
                          static_cast<double>(flat.offset_codes[i]), "-65535 to 65535");
+  if (!flat.gain.empty() && flat.gain.size() != pixels)
+    return field_error("flat.gain: number of values", static_cast<double>(flat.gain.size()),
+                       "0 or width x height = " + std::to_string(pixels));
+  for (std::size_t i = 0; i < flat.gain.size(); ++i)
+    if (!(flat.gain[i] >= 0.01F && flat.gain[i] <= 100))
+      return field_error("flat.gain[" + std::to_string(i) + "]", static_cast<double>(flat.gain[i]),
+                         "0.01 to 100");
   for (std::size_t i = 0; i < 3; ++i)
     if (!(std::abs(flat.vignetting[i]) <= 1e3))
       return field_error("flat.vignetting[" + std::to_string(i) + "]", flat.vignetting[i], "-1000 to 1000");

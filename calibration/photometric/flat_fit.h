@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "calibration/photometric/mean_frame.h"
 #include "lighting/flat_field.h"
@@ -15,30 +16,50 @@
 
 namespace lightwell::calibration {
 
-struct FlatFit {
-  FlatField flat;
-  int vignetting_terms = 0;                              // of 3; the fewest that the frames support
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of flat.vignetting
-  std::array<double, 3> level_cd_m2 = {0, 0, 0};         // of the uniform scene on the axis, a colour each
-  double offset_rms_codes = 0;                           // of the fixed pattern
-  double offset_sigma_codes = 0;                         // its standard error: temporal noise over √frames
-  double tilt = 0;         // of the scene: relative change from the centre to the edge
-  std::size_t pixels = 0;  // that were fitted
-  bool from_dark = false;  // the pattern was taken from dark frames
+// The mean of a take and its name, for errors and the report.
+struct FlatTake {
+  std::string name;
+  MeanFrame mean;
+  std::array<double, 3> level_cd_m2 = {0, 0, 0};  // found: of the even scene on the axis, a colour each
 };
 
-// Vignetting and fixed pattern from frames of an even scene: code = response(level · T(θ)) + offset, T an even polynomial
-// of the angle off axis with up to three terms (each more only where it lowers the residual by more than noise does).
-// Tukey's weights keep lamps, dust and dead pixels out. The offset is what remains of each pixel; with dark frames it is
-// what they say, and the even scene tells the vignetting alone. Pixels that the border of the field cuts, or beyond, get
-// an offset from dark frames only.
+struct FlatFit {
+  FlatField flat;
+  std::vector<FlatTake> takes;  // without their codes
+  std::optional<double> dark_temperature_c;
+  int vignetting_terms = 0;                              // of 3; the fewest that the frames support
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of flat.vignetting
+  double offset_rms_codes = 0;                           // of the fixed pattern
+  double offset_sigma_codes = 0;  // its standard error, pixel by pixel: temporal noise over √frames
+  double offset_shared_sigma_codes =
+      0;                  // and what all pixels share, through level, tilt and vignetting; rms over the field
+  double gain_rms = 0;    // of the pixels' gains about 1
+  double gain_sigma = 0;  // of that, noise; infinite: the takes cannot tell gain from offset
+  double tilt = 0;        // of the scene: relative change from the centre to the edge
+  double scene_scatter = 0;        // turning: disagreement of the takes on the scene, relative
+  std::vector<double> turned_deg;  // turning: of each take; empty: the takes are of even scenes
+  std::size_t pixels = 0;          // readings that were fitted; turning: places of the scene
+  bool from_dark = false;          // the offsets were taken from dark frames
+};
+
+// Vignetting and fixed pattern from takes of even scenes, of one brightness or several:
+// code = response(gain · level · T(θ)) + offset. Vignetting: fit_vignetting, from all takes together; each may have a tilt
+// of its own. Offset and gain of each pixel: fit_pattern, from what remains of it; without dark frames and with one take
+// there is an offset only. With dark frames the offsets come from them (and are good beyond the field too), unless the
+// gains are supported too. Pixels that the border of the field cuts, or beyond, get an offset from dark frames only.
 // bad_input: sizes or bits that do not fit lens and response, fewer than 2 frames, clipped or dark pixels, a scene that is
 // not even (changes by more than a fifth from the centre to the edge).
-Result<FlatFit> fit_flat_field(const MeanFrame& even, const std::optional<MeanFrame>& dark, const Lens& lens,
-                               const Response& response, const std::string& name_for_errors);
+Result<FlatFit> fit_flat_field(const std::vector<FlatTake>& even, const std::optional<MeanFrame>& dark,
+                               const Lens& lens, const Response& response);
 
-nlohmann::ordered_json report_to_json(const FlatFit& fit, const MeanFrame& even);
+// Vignetting from turning the camera under constant light (fit_turning); offsets from dark frames alone.
+Result<FlatFit> fit_turned_flat_field(const std::vector<FlatTake>& takes,
+                                      const std::vector<double>& turned_deg,
+                                      const std::optional<MeanFrame>& dark, const Lens& lens,
+                                      const Response& response);
+
+nlohmann::ordered_json report_to_json(const FlatFit& fit);
 // The text of flat.json: the flat field, and the report as "fit".
-std::string flat_file(const FlatFit& fit, const MeanFrame& even);
+std::string flat_file(const FlatFit& fit);
 
 }  // namespace lightwell::calibration

@@ -5,6 +5,14 @@
 #include <cmath>
 
 namespace lightwell::calibration {
+namespace {
+
+// Γ((ν + 1)/2) / (Γ(ν/2) √π)
+double normalisation(double degrees) {
+  return std::exp(std::lgamma((degrees + 1) / 2) - std::lgamma(degrees / 2)) / std::sqrt(std::acos(-1.0));
+}
+
+}  // namespace
 
 // With t = √ν tan φ the density becomes cos^(ν−1) φ, smooth on a bounded interval, which Simpson's rule integrates.
 double student_cdf(double t, double degrees) {
@@ -16,20 +24,21 @@ double student_cdf(double t, double degrees) {
     const double weight = i == 0 || i == kSteps ? 1 : i % 2 != 0 ? 4 : 2;
     sum += weight * std::pow(std::cos(h * i), degrees - 1);
   }
-  const double norm =
-      std::exp(std::lgamma((degrees + 1) / 2) - std::lgamma(degrees / 2)) / std::sqrt(std::acos(-1.0));
-  const double half = sum * h / 3 * norm;
+  const double half = sum * h / 3 * normalisation(degrees);
   return t < 0 ? 0.5 - half : 0.5 + half;
 }
 
+// Newton: the distribution is concave above 0, so that steps from 0 never pass the root.
 double student_two_sided(double probability, double degrees) {
-  double low = 0, high = 1;
-  while (2 * student_cdf(high, degrees) - 1 < probability && high < 1e12) high *= 2;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = (low + high) / 2;
-    (2 * student_cdf(middle, degrees) - 1 < probability ? low : high) = middle;
+  const double peak = normalisation(degrees) / std::sqrt(degrees);
+  double t = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double density = peak * std::pow(1 + t * t / degrees, -(degrees + 1) / 2);
+    const double step = ((1 + probability) / 2 - student_cdf(t, degrees)) / density;
+    t += step;
+    if (!(step > 1e-11 * t)) break;
   }
-  return (low + high) / 2;
+  return t;
 }
 
 }  // namespace lightwell::calibration

@@ -155,32 +155,4 @@ ReportSection lens_section(const Lens& lens, const json& file) {
   return out;
 }
 
-ReportSection flat_section(const FlatField& flat, double max_theta_rad, const json& file) {
-  ReportSection out;
-  SvgPlot::Points curve;
-  double least = 1;
-  for (int i = 0; i <= 100; ++i) {
-    const double theta = max_theta_rad * i / 100;
-    curve.emplace_back(theta * 180 / kPi, 100 * flat.transmission(theta));
-    least = std::min(least, flat.transmission(theta));
-  }
-  SvgPlot plot(620, 240, {0, max_theta_rad * 180 / kPi, false, "angle off axis, degrees"},
-               {std::floor(10 * least) * 10, 105, false, "transmission, %"});
-  plot.line(curve, "curve");
-  out.html = "<h2>Flat field</h2><p>" + formatted("%.1f %%", 100 * flat.transmission(max_theta_rad)) +
-             " of the light is left at the edge.";
-  const json fit = file.value("fit", json::object());
-  if (is_number(fit, "offset_rms_codes") && is_number(fit, "offset_sigma_codes"))
-    out.html += " Fixed pattern " + formatted("%.2f codes rms", fit.at("offset_rms_codes").get<double>()) +
-                ", known to " + formatted("%.2f codes.", fit.at("offset_sigma_codes").get<double>());
-  if (is_number(fit, "temperature_c"))
-    out.html += " Measured at " + formatted("%.1f °C.", fit.at("temperature_c").get<double>());
-  if (is_number(fit, "scene_tilt") && fit.at("scene_tilt").get<double>() > 0.05)
-    out.warning = "the scene for the flat field changed by " +
-                  formatted("%.0f %%", 100 * fit.at("scene_tilt").get<double>()) +
-                  " from the centre to the edge. ";
-  out.html += "</p>" + plot.svg();
-  return out;
-}
-
 }  // namespace lightwell::calibration

@@ -69,11 +69,15 @@ std::string curve_plot(const Response& response, const json& fit, const Range& r
 // Measured over true luminance, with the claimed 95 %.
 std::string error_plot(const json& file, const json& fit, const Range& range) {
   const double t95 = value_or(fit, "t95", 2);
-  double most = 2;
+  double most = 2;  // percent; a tenth more than the farthest end of a bar
   for (const char* list : {"fit", "check"})
     for (const json& patch : fit.value(list, json::array()))
-      if (patch.value("used", true))
-        most = std::max(most, 130 * std::abs(value_or(patch, "relative_error", 0)));
+      if (const double l = value_or(patch, "luminance_cd_m2", 0); l > 0 && patch.value("used", true)) {
+        most = std::max(most, 110 * std::abs(value_or(patch, "relative_error", 0)));
+        if (const auto interval = patch.find("interval_95_cd_m2"); interval != patch.end())
+          for (const json& end : *interval)
+            if (end.is_number()) most = std::max(most, 110 * std::abs(end.get<double>() / l - 1));
+      }
   most = std::min(most, 100.0);
   SvgPlot plot(620, 220, {range.low, range.high, true, "luminance, cd/m²"}, {-most, most, false, "error, %"});
   SvgPlot::Points low, high;
@@ -120,7 +124,18 @@ std::string verdict_of(const json& file, const json& fit) {
     const json& sigma = table.at("relative_sigma")[i];
     if (l >= low && l <= high && sigma.is_number()) worst = std::max(worst, t95 * sigma.get<double>());
   }
-  return formatted("%.1f %%", 100 * worst) + formatted(" from %.3g", low) + formatted(" to %.3g cd/m²", high);
+  return formatted("%.1f %%", 100 * worst) + " from " + plain_number(low) + " to " + plain_number(high) +
+         " cd/m²";
+}
+
+std::string assumed_of(const json& file) {
+  std::string out;
+  const json assumed = file.value("assumed", json::object());
+  for (const auto& [key, value] : assumed.items())
+    out += (out.empty() ? "" : ", ") + key + " = " + formatted("%g", value.get<double>());
+  return out.empty()
+             ? out
+             : out + (out.find(',') == std::string::npos ? " was" : " were") + " assumed, not stated. ";
 }
 
 std::string warning_of(const json& fit) {
@@ -135,6 +150,45 @@ std::string warning_of(const json& fit) {
   return out;
 }
 
+std::string parameters_of(const json& fit) {
+  const json &order = fit.at("parameter_order"), &covariance = fit.at("covariance");
+  const json& values = fit.at("parameters");
+  std::string out;
+  for (std::size_t i = 0; i < order.size() && i < covariance.size(); ++i) {
+    const std::string name = order[i].get<std::string>();
+    const std::string sigma = formatted("%.2g", std::sqrt(std::max(0.0, covariance[i][i].get<double>())));
+    const auto value = values.find(name);
+    out += (i > 0 ? ", " : " ") + escaped(name) +
+           (value != values.end() && value->is_number() ? formatted(" = %.6g", value->get<double>())
+                                                        : std::string()) +
+           " ± " + sigma;
+  }
+  return " Parameters, with standard deviations:" + out + ".";
+}
+
+std::string patch_table(const json& fit) {
+  std::string out =
+      "<table class=\"patches\"><tr><th>patch</th><th>luminance, cd/m²</th><th>code</th><th>measured, "
+      "cd/m²</th><th>error</th>"
+      "<th>stops</th><th></th></tr>";
+  for (const char* list : {"fit", "check"})
+    for (const json& patch : fit.value(list, json::array())) {
+      const double error = value_or(patch, "relative_error", NAN);
+      const bool check = std::string(list) == "check";
+      out += "<tr><td>" + escaped(patch.value("patch", std::string())) + "</td><td>" +
+             plain_number(value_or(patch, "luminance_cd_m2", 0)) + "</td><td>" +
+             formatted("%.1f", value_or(patch, "code", 0)) + "</td><td>" +
+             plain_number(value_or(patch, "measured_cd_m2", 0)) + "</td><td>" +
+             (std::isfinite(error) ? formatted("%+.2f %%", 100 * error) : "–") + "</td><td>" +
+             (std::isfinite(error) ? formatted("%+.3f", value_or(patch, "stops", 0)) : "–") + "</td><td>" +
+             (check ? patch.value("inside_95", true) ? "check, as foretold" : "check, OUTSIDE its 95 %"
+              : patch.value("used", true) ? "fitted"
+                                          : "left out: contradicts the others") +
+             "</td></tr>";
+    }
+  return out + "</table>";
+}
+
 }  // namespace
 
 ReportSection response_section(const Response& response, const json& file) {
@@ -144,25 +198,22 @@ ReportSection response_section(const Response& response, const json& file) {
   out.html = "<h2>Response</h2><p>" + std::string(model_name(response)) + " model, " +
              std::to_string(response.bits) + " bits, at " +
              formatted("%g µs", response.reference_exposure_us) + ".";
-  if (fit.contains("parameters") && fit.contains("covariance") && fit.contains("parameter_order")) {
-    const json& order = fit.at("parameter_order");
-    out.html += " Standard deviations:";
-    for (std::size_t i = 0; i < order.size() && i < fit.at("covariance").size(); ++i)
-      out.html += (i > 0 ? ", " : " ") + escaped(order[i].get<std::string>()) + " " +
-                  formatted("%.2g", std::sqrt(std::max(0.0, fit.at("covariance")[i][i].get<double>())));
-    out.html += ".";
-  }
-  out.html += "</p>" + curve_plot(response, fit, range);
+  if (fit.contains("parameters") && fit.contains("covariance") && fit.contains("parameter_order"))
+    out.html += parameters_of(fit);
+  out.html +=
+      "</p><p class=\"note\">The line is the response, the dots are the patches: <i class=\"key "
+      "fit\"></i>fitted <i class=\"key check\"></i>check <i class=\"key out\"></i>left out. "
+      "Bars, where they are wide enough to be seen, hold the true luminance with 95 % probability.</p>" +
+      curve_plot(response, fit, range);
   if (!fit.empty() && file.contains("table"))
     out.html +=
-        "<p>Error of the measured luminance at each patch; the band is where it lies with 95 % probability, "
-        "from "
-        "the patches alone. <i class=\"key fit\"></i>fitted <i class=\"key check\"></i>check <i class=\"key "
-        "out\"></i>left out</p>" +
-        error_plot(file, fit, range);
+        "<p class=\"note\">How far the measured luminance of each patch lies from the meter's. The band "
+        "holds the error "
+        "of the response itself with 95 % probability; the bars add the meter's and the code's noise.</p>" +
+        error_plot(file, fit, range) + patch_table(fit);
   if (!fit.empty() && file.contains("table")) {
     out.verdict = verdict_of(file, fit);
-    out.warning = warning_of(fit);
+    out.warning = assumed_of(file) + warning_of(fit);
     if (out.verdict.empty()) out.warning += "the response is nowhere known to 5 %. ";
   } else if (file.contains("brackets")) {
     out.verdict =

@@ -71,6 +71,28 @@ std::string formatted(const char* format, double value) {
   return out;
 }
 
+std::string plain_number(double value) {
+  const double size = std::abs(value);
+  if (size == 0 || (size >= 1e-3 && size < 99950)) {
+    // Three significant digits, none of them an exponent.
+    const int digits = size == 0 ? 0 : std::clamp(2 - static_cast<int>(std::floor(std::log10(size))), 0, 5);
+    char out[64];
+    std::snprintf(out, sizeof out, "%.*f", digits, value);
+    std::string text = out;
+    if (text.find('.') != std::string::npos) {
+      text.erase(text.find_last_not_of('0') + 1);
+      if (text.back() == '.') text.pop_back();
+    }
+    return text;
+  }
+  int power = static_cast<int>(std::floor(std::log10(size * 1.0005)));
+  const char* digit[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string raised = power < 0 ? "⁻" : "";
+  for (const char c : std::to_string(std::abs(power))) raised += digit[c - '0'];
+  const std::string mantissa = formatted("%.3g", value / std::pow(10, power));
+  return (mantissa == "1" ? "" : mantissa + "·") + "10" + raised;
+}
+
 SvgPlot::SvgPlot(int width, int height, Axis x, Axis y)
     : width_(width), height_(height), x_(std::move(x)), y_(std::move(y)) {
   if (!(x_.high > x_.low)) x_.high = x_.logarithmic ? 10 * x_.low : x_.low + 1;
@@ -90,7 +112,7 @@ void SvgPlot::grid() {
   for (const double v : ticks(x_)) {
     const double x = at_x(v);
     frame_ += "<line class=\"grid\" x1=\"" + number(x) + "\" y1=\"" + number(kTop) + "\" x2=\"" + number(x) +
-              "\" y2=\"" + number(bottom) + "\"/>" + text(x, bottom + 16, "middle", formatted("%g", v));
+              "\" y2=\"" + number(bottom) + "\"/>" + text(x, bottom + 16, "middle", plain_number(v));
   }
   for (const double v : ticks(y_)) {
     const double y = at_y(v);

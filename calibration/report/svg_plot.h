@@ -11,6 +11,8 @@ namespace lightwell::calibration {
 
 // Text for HTML and SVG: <, >, &, quotes and control characters made harmless.
 std::string escaped(std::string_view text);
+// Three digits as a person writes them: 0.11, 6300, 1.2·10⁵.
+std::string plain_number(double value);
 // printf for one number.
 std::string formatted(const char* format, double value);
 

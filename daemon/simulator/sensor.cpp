@@ -107,6 +107,7 @@ Sensor::Sensor(const ProbeModel& model)
       const double theta = std::min(lens.theta_rad({x, y}), lens.max_theta_rad);
       transmission_.push_back(static_cast<float>(flat.transmission(theta)));
     }
+  for (std::size_t i = 0; i < flat.gain.size(); ++i) transmission_[i] *= flat.gain[i];
   offset_ = flat.offset_codes.empty() ? std::vector<float>(width * height, 0.0f) : flat.offset_codes;
   codes_.resize(width * height);
   noise_.insert(noise_.end(), noise_.begin(),

@@ -20,10 +20,10 @@ Pixel weigh(const Calibration& calibration, int x, int y, double omega) {
   if (flat.vignetting !=
       std::array<double, 3>{0, 0, 0})  // a border pixel's centre may lie just past the field
     pixel.weight_sr /= flat.transmission(std::min(lens.theta_rad(Vec2d(x, y)), lens.max_theta_rad));
-  if (!flat.offset_codes.empty())
-    pixel.offset_codes =
-        flat.offset_codes[static_cast<std::size_t>(y) * static_cast<std::size_t>(lens.image_size[0]) +
-                          static_cast<std::size_t>(x)];
+  const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(lens.image_size[0]) +
+                  static_cast<std::size_t>(x);
+  if (!flat.gain.empty()) pixel.weight_sr /= static_cast<double>(flat.gain[at]);
+  if (!flat.offset_codes.empty()) pixel.offset_codes = flat.offset_codes[at];
   return pixel;
 }
 

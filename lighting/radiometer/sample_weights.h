@@ -18,7 +18,7 @@ namespace lightwell::radiometer {
 // each other.
 struct SampleWeights {
   std::vector<float>
-      weight_sr;  // solid angle ÷ vignetting: ideal radiance × this is the pixel's energy; 0: none
+      weight_sr;  // solid angle ÷ (vignetting · gain): ideal radiance × this is the pixel's energy; 0: none
   std::vector<float> offset_codes;   // to subtract from the code
   std::vector<std::uint32_t> group;  // of PixelBins
   // Σ weight of the bin's pixels, per channel: what a constant subtracted from every pixel costs the bin.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "calibration/report/svg_plot.h"
 #include "interface/calibration_io.h"
 #include "interface/environment_io.h"
 #include "interface/jpeg.h"
@@ -45,6 +46,15 @@ class CalibrateMore : public test::PhotometricTest {
     }
   }
 };
+
+TEST(PlainNumber, HasThreeDigitsAndNoComputersExponent) {
+  const struct {
+    double value;
+    const char* text;
+  } cases[] = {{0, "0"},        {0.11, "0.11"},       {6300, "6300"}, {12.34, "12.3"}, {-2, "-2"},
+               {100000, "10⁵"}, {123456, "1.23·10⁵"}, {99960, "10⁵"}, {1e-4, "10⁻⁴"},  {0.00123, "0.00123"}};
+  for (const auto& c : cases) EXPECT_EQ(calibration::plain_number(c.value), c.text);
+}
 
 TEST_F(CalibrateMore, BracketsGiveBackTheCurveTheyWereMadeWith) {
   std::vector<double> seconds;
@@ -134,6 +144,9 @@ TEST_F(CalibrateMore, ReportIsOnePageWithTheVerdictAndNothingToLoad) {
   const std::string page = *read_text_file(path("report.html"));
   EXPECT_NE(page.find("Good to 0.31 px and "), std::string::npos);
   EXPECT_NE(page.find("no points beyond 20°"), std::string::npos);
+  EXPECT_NE(page.find(" from 0.1 to 10⁵ cd/m²"), std::string::npos);
+  EXPECT_NE(page.find("bits = 12, clip_code = 4095, reference_exposure_us = 10000 were assumed, not stated"),
+            std::string::npos);
   EXPECT_NE(page.find("a&amp;b"), std::string::npos);
   EXPECT_EQ(page.find("grey <"), std::string::npos);  // escaped
   for (const char* loaded : {"<script", "src=", "href=", "url(", "@import"})
