@@ -76,7 +76,8 @@ std::string coverage_map(const json& coverage) {
     }
     rim.push_back((r + 1) % 3 == 0 ? formatted("%.0f°", ring_deg * static_cast<double>(r + 1)) : "");
   }
-  return "<figure>" + polar_cells(300, fill, rim) + "<figcaption>points; red: none</figcaption></figure>";
+  return "<figure>" + polar_cells(300, fill, rim) + "<figcaption>points in a cell: dark is " +
+         formatted("%.0f", most) + ", red is none</figcaption></figure>";
 }
 
 std::string uncertainty_map(const json& uncertainty) {
@@ -91,8 +92,9 @@ std::string uncertainty_map(const json& uncertainty) {
                                   std::max(largest, 1e-9)));
     rim.push_back((r + 1) % 6 == 0 ? formatted("%.0f°", theta[r + 1].get<double>()) : "");
   }
-  return "<figure>" + polar_cells(300, fill, rim) + "<figcaption>uncertainty of projection: dark is " +
-         formatted("%.3f px", largest) + "</figcaption></figure>";
+  return "<figure>" + polar_cells(300, fill, rim) +
+         "<figcaption>uncertainty of projection: white is 0, dark is " + formatted("%.3f px", largest) +
+         "</figcaption></figure>";
 }
 
 // The largest angle that a ring with points reaches.
@@ -113,6 +115,19 @@ std::string import_sentence(const json& imported) {
          escaped(imported.value("model", std::string())) + "); the conversion is off by " +
          formatted("%.3g px rms, ", imported.at("rms_px").get<double>()) +
          formatted("%.3g px at most.", imported.at("max_px").get<double>());
+}
+
+// The angle beyond which most directions have no points, before those without any begin; else the largest of all.
+double well_covered_deg(const json& coverage) {
+  const json& points = coverage.at("points");
+  std::size_t rings = points.size();
+  const auto is_sparse = [&](const json& ring) {
+    const auto none =
+        std::count_if(ring.begin(), ring.end(), [](const json& n) { return n.get<double>() == 0; });
+    return 2 * static_cast<std::size_t>(none) > ring.size();
+  };
+  while (rings > 0 && is_sparse(points[rings - 1])) --rings;
+  return coverage.at("ring_deg").get<double>() * static_cast<double>(rings);
 }
 
 }  // namespace
@@ -151,6 +166,10 @@ ReportSection lens_section(const Lens& lens, const json& file) {
   if (file.contains("coverage"))
     if (const double covered = covered_deg(file.at("coverage")); covered < max_deg - 1)
       out.warning += "no points beyond " + formatted("%.0f°", covered) + ". ";
+  if (file.contains("coverage"))
+    if (const double covered = covered_deg(file.at("coverage")), well = well_covered_deg(file.at("coverage"));
+        well < std::min(covered, max_deg) - 1)
+      out.warning += "points in less than half of the directions beyond " + formatted("%.0f°", well) + ". ";
   if (file.contains("views")) out.html += arrows(lens, file.at("views")) + view_table(file.at("views"));
   return out;
 }
