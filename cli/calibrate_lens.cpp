@@ -25,11 +25,20 @@ struct LensOptions {
   double marker_mm = 0;  // 0: the board's usual one
   std::string corners;
   std::string corners_out;
+  std::string target;        // exact, printed; empty: printed in pictures, exact in CORNERS.json
   double max_theta_deg = 0;  // 0: to the farthest point that counts
   std::string gravity;
   std::string out;
   bool json = false;
 };
+
+std::string in_words(const calibration::TargetShape& shape) {
+  char text[128];
+  std::snprintf(text, sizeof text,
+                "stretched by %.2f mm, sheared by %.2f mm, bent by up to %.2f mm on half its width",
+                shape.change_mm[0], shape.change_mm[1], shape.change_mm.tail<3>().cwiseAbs().maxCoeff());
+  return text;
+}
 
 void print_text(const calibration::LensCalibration& c, const calibration::TargetViews& target_views,
                 const std::string& out) {
@@ -49,11 +58,7 @@ void print_text(const calibration::LensCalibration& c, const calibration::Target
     std::printf("%.3f px on views held out\n", c.held_out_rms_px);
   else
     std::printf("too few views to hold some out\n");
-  if (c.shape)
-    std::printf(
-        "board             stretched by %.2f mm, sheared by %.2f mm, bent by up to %.2f mm on half its "
-        "width\n",
-        c.shape->change_mm[0], c.shape->change_mm[1], c.shape->change_mm.tail<3>().cwiseAbs().maxCoeff());
+  if (c.shape) std::printf("board             %s\n", in_words(*c.shape).c_str());
   std::printf("field             to %.1f degrees off axis", c.lens.max_theta_rad * 180 / kPi);
   if (c.lens.max_theta_rad > c.supported_theta_rad)
     std::printf(", extrapolated beyond %.1f", c.supported_theta_rad * 180 / kPi);
@@ -137,14 +142,17 @@ Status take_options(calibration::LensCalibration& solved, const LensOptions& opt
   return {};
 }
 
+bool is_exact(const LensOptions& options) {
+  return options.target.empty() ? options.pictures.empty() : options.target == "exact";
+}
+
 int run(const LensOptions& options) {
   if (const Status outputs = check_outputs(options); !outputs) return fail(outputs.error());
   const auto input = read_input(options);
   if (!input) return fail(input.error());
   const calibration::TargetViews& target_views = input->views.target_views;
-  auto solved =
-      calibration::calibrate_lens(target_views, options.pictures.empty() ? calibration::TargetTrust::exact
-                                                                         : calibration::TargetTrust::printed);
+  auto solved = calibration::calibrate_lens(
+      target_views, is_exact(options) ? calibration::TargetTrust::exact : calibration::TargetTrust::printed);
   if (!solved) return fail({solved.error().kind, input->name + solved.error().message});
   for (std::size_t i = 0; i < input->views.reasons.size(); ++i)
     if (!input->views.reasons[i].empty()) solved->views[i].reason = input->views.reasons[i];
@@ -153,6 +161,12 @@ int run(const LensOptions& options) {
   const std::string report = calibration::lens_report(*solved, target_views)
                                  .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   if (const Status status = write(options, report, target_views); !status) return fail(status.error());
+  if (solved->doubted_shape)
+    std::fprintf(stderr,
+                 "lightwell: the board is not as exact as --target exact says, it is %s: the lens is less "
+                 "sure than it "
+                 "says; --target printed takes that into account\n",
+                 in_words(*solved->doubted_shape).c_str());
   if (options.json)
     std::printf("%s\n", report.c_str());
   else
@@ -178,6 +192,12 @@ Command add_calibrate_lens(CLI::App& calibrate) {
       "--corners", o->corners,
       "Points of the target and their pixels: {\"image_size\": [w, h], \"views\": [{\"name\": .., "
       "\"points\": [[X, Y, Z, u, v], ..]}]}, mm and pixels");
+  command
+      ->add_option(
+          "--target", o->target,
+          "exact: the points are where they are said to be; printed: the board's stretch, shear and bow are "
+          "found too; else printed with pictures, exact with --corners")
+      ->check(CLI::IsMember({"exact", "printed"}));
   command->add_option("--corners-out", o->corners_out, "What was found in the pictures, as for --corners");
   command
       ->add_option("--max-theta", o->max_theta_deg,

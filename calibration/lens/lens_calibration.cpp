@@ -66,7 +66,7 @@ double robust_noise_px(const Lens& lens, const std::vector<Judged>& judged) {
 
 double robust_adjust(Lens& lens, std::vector<Judged>& judged, const LensFreedom& freedom, int iterations) {
   std::vector<PosedView> views = posed(judged, false);
-  // Cauchy's loss with 95 % of the efficiency of least squares on clean data.
+  // The scale at which Cauchy's loss of a normal number has 95 % of the efficiency of least squares.
   const double scale = 2.385 * std::max(1e-4, robust_noise_px(lens, judged));
   if (!(adjust(lens, views, {freedom, scale, iterations}) >= 0)) return kSquares;
   take_poses(judged, views);
@@ -142,17 +142,26 @@ void settle(Solution& s, int rounds) {
   }
 }
 
-// The board's own shape, where the views support it; the solution then goes on with the points of that board, which
-// are kept in `shaped`.
-std::optional<TargetShape> take_shape(Solution& s, const TargetViews& square, TargetViews& shaped) {
-  TargetShape shape = square_shape(square.views);
-  if (!shape_is_supported(s.lens, posed(s.judged, true), shape)) return {};
+// The solution goes on with the points of the board of that shape, which are kept in `shaped`.
+void take_shape(Solution& s, const TargetShape& shape, const TargetViews& square, TargetViews& shaped) {
   shaped = square;
   for (TargetView& view : shaped.views)
     for (Correspondence& p : view.points) p.target_mm = shape.place(p.target_mm);
   for (std::size_t i = 0; i < s.judged.size(); ++i) s.judged[i].view = &shaped.views[i];
   settle(s, 5);
-  return shape;
+}
+
+// A printer stretches and shears by a percent or two. Rows of another pitch than the columns are another board.
+Status printable(const TargetShape& shape) {
+  constexpr double kMost = 0.05;
+  const double stretch = std::abs(shape.change_mm[0]) / shape.half_mm;
+  const double shear = std::abs(shape.change_mm[1]) / shape.half_mm;
+  if (stretch <= kMost && shear <= kMost) return {};
+  return Error{ErrorKind::bad_input, "the points are of a board stretched by " +
+                                         text("%.1f %%", 100 * stretch) + " and sheared by " +
+                                         text("%.1f %%", 100 * shear) + ", allowed at most " +
+                                         text("%.0f %%", 100 * kMost) +
+                                         ": is the board's size right, are the points in its order?"};
 }
 
 Status separable(const Lens& lens, const std::vector<Judged>& judged) {
@@ -301,12 +310,16 @@ Result<LensCalibration> calibrate_lens(const TargetViews& target_views, TargetTr
   if (used_count(s.judged) < kFewestViews)
     return too_few(used_count(s.judged), ": no one lens explains " + names_of(s.judged, false));
   if (const Status status = separable(s.lens, s.judged); !status) return status.error();
-  std::optional<TargetShape> shape;
+  const auto found = supported_shape(s.lens, posed(s.judged, true), square_shape(usable.views));
+  if (found)
+    if (const Status status = printable(*found); !status) return status.error();
+  const bool take = found && trust == TargetTrust::printed;
   TargetViews shaped;
-  if (trust == TargetTrust::printed) shape = take_shape(s, usable, shaped);
-  auto out = concluded(s, shape);
+  if (take) take_shape(s, *found, usable, shaped);
+  auto out = concluded(s, take ? found : std::nullopt);
   if (!out) return out.error();
-  out->shape = shape;
+  out->trust = trust;
+  (take ? out->shape : out->doubted_shape) = found;
   std::size_t next = 0;
   for (const TargetView& view : target_views.views) {
     const bool known = view.points.size() >= kFewestPoints;

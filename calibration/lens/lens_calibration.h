@@ -25,6 +25,10 @@ struct ViewResult {
   std::vector<Vec2d> residuals_px;  // projection less pixel of every point; empty where no pose was found
 };
 
+// Whether the target's points are exact, or a printed grid whose stretch, shear and bow are to be found as far as
+// the views support it (supported_shape). All views then show one board; turned by 180 degrees it is the same.
+enum class TargetTrust { exact, printed };
+
 struct LensCalibration {
   Lens lens;  // max_theta_rad: supported_theta_rad, until set_field says otherwise
   double supported_theta_rad =
@@ -37,9 +41,12 @@ struct LensCalibration {
   // coefficients were chosen with all views, the held ones too: the choice among four numbers of coefficients is in it.
   // Infinite where too few are left to fit a lens to.
   double held_out_rms_px = 0;
-  double noise_px = 0;               // standard deviation of a coordinate, degrees of freedom counted
-  std::vector<ViewResult> views;     // in the order given
+  double noise_px = 0;            // standard deviation of a coordinate, degrees of freedom counted
+  std::vector<ViewResult> views;  // in the order given
+  TargetTrust trust = TargetTrust::exact;
   std::optional<TargetShape> shape;  // of the board, where it was asked for and the views support it
+  // Of a board that was said to be exact and that the views say is not: lens and covariance then claim too much.
+  std::optional<TargetShape> doubted_shape;
 };
 
 // Kannala–Brandt lens from views of a target, without an initial guess.
@@ -47,10 +54,7 @@ struct LensCalibration {
 // too; both come back when the lens explains them. Coefficients: dropped from the highest while the held-out
 // error (cross-validation by views) falls by more than 1 %; aspect: free where the corrected AIC asks for it.
 // bad_input names the view or the reason: fewer than 3 usable views, all views parallel, all points in the middle,
-// points that fit no lens.
-// Whether the target's points are exact, or a printed grid whose stretch, shear and bow are to be found as far as
-// the views support it (corrected AIC). All views then show one board; turned by 180 degrees it is the same.
-enum class TargetTrust { exact, printed };
+// points that fit no lens, a board that is stretched or sheared by more than a printer does.
 Result<LensCalibration> calibrate_lens(const TargetViews& target_views,
                                        TargetTrust trust = TargetTrust::exact);
 

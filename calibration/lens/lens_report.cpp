@@ -30,7 +30,7 @@ ordered_json view_json(const ViewResult& result, const TargetView& view) {
       {"reason", result.reason}};
   ordered_json arrows = ordered_json::array();
   for (std::size_t i = 0; i < result.residuals_px.size(); ++i) {
-    // Hundredths of a pixel are what can be seen.
+    // Thousandths of a pixel are finer than can be seen.
     const auto rounded = [](double v) { return std::round(v * 1000) / 1000; };
     const Vec2d& at = view.points[i].pixel;
     const Vec2d& error = result.residuals_px[i];
@@ -72,6 +72,12 @@ ordered_json uncertainty_json(const LensCalibration& calibration) {
           {"largest_sigma_px", largest}};
 }
 
+ordered_json shape_json(const TargetShape& shape) {
+  const auto& c = shape.change_mm;
+  return {{"stretch", c[0]}, {"shear", c[1]}, {"bow_x", c[2]},
+          {"bow_y", c[3]},   {"twist", c[4]}, {"half_width", shape.half_mm}};
+}
+
 }  // namespace
 
 ordered_json lens_report(const LensCalibration& calibration, const TargetViews& target_views) {
@@ -94,11 +100,9 @@ ordered_json lens_report(const LensCalibration& calibration, const TargetViews& 
   out["coefficients"] = calibration.freedom.coefficients;
   out["aspect_free"] = calibration.freedom.aspect;
   out["projection_uncertainty"] = uncertainty_json(calibration);
-  if (calibration.shape) {
-    const auto& c = calibration.shape->change_mm;
-    out["board_shape_mm"] = {{"stretch", c[0]}, {"shear", c[1]}, {"bow_x", c[2]},
-                             {"bow_y", c[3]},   {"twist", c[4]}, {"half_width", calibration.shape->half_mm}};
-  }
+  out["target"] = calibration.trust == TargetTrust::exact ? "exact" : "printed";
+  if (calibration.shape) out["board_shape_mm"] = shape_json(*calibration.shape);
+  if (calibration.doubted_shape) out["doubted_board_shape_mm"] = shape_json(*calibration.doubted_shape);
   const FieldCoverage coverage = field_coverage(calibration, target_views);
   out["coverage"] = {{"ring_deg", coverage.ring_deg},
                      {"sector_deg", 360.0 / static_cast<double>(FieldCoverage::kSectors)},

@@ -38,7 +38,14 @@ bool aspect_is_free(const Lens& lens, const std::vector<PosedView>& views) {
 
 }  // namespace
 
-bool shape_is_supported(const Lens& lens, const std::vector<PosedView>& views, TargetShape& shape) {
+std::optional<TargetShape> supported_shape(const Lens& lens, const std::vector<PosedView>& views,
+                                           const TargetShape& square) {
+  constexpr double kDecisive = 10;
+  constexpr double kFlat = 1e-6;  // of the board's width
+  for (const PosedView& view : views)
+    for (const Correspondence& p : view.points)
+      if (std::abs(p.target_mm.z() - square.middle_mm.z()) > kFlat * square.half_mm) return {};
+  TargetShape shape = square;
   double aic[2];
   for (const bool shaped : {false, true}) {
     Lens l = lens;
@@ -46,7 +53,7 @@ bool shape_is_supported(const Lens& lens, const std::vector<PosedView>& views, T
     const double error = adjust(l, v, {{}, kNone, 30}, shaped ? &shape : nullptr);
     aic[shaped] = corrected_aic(error, count_points(views), views.size(), shaped ? 13 : 8);
   }
-  return aic[1] < aic[0];
+  return aic[1] + kDecisive < aic[0] ? std::optional(shape) : std::nullopt;
 }
 
 double held_out_rms_px(const Lens& lens, const std::vector<PosedView>& views, const LensFreedom& freedom) {

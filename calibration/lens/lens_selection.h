@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "calibration/lens/lens_adjustment.h"
@@ -15,9 +16,11 @@ struct LensSelection {
   double held_out_rms_px = 0;
 };
 
-// Whether the views ask for the board's shape: by the corrected Akaike criterion. views: with the points of the square
-// board; shape: in, the square one, out, the one found.
-bool shape_is_supported(const Lens& lens, const std::vector<PosedView>& views, TargetShape& shape);
+// The board's shape where the views ask for it: where the corrected Akaike criterion is better by more than 10 (no
+// support is left for the square board; Burnham and Anderson 2002, section 2.6). Nothing for a target that is not flat.
+// views: with the points of the square board; square: that board.
+std::optional<TargetShape> supported_shape(const Lens& lens, const std::vector<PosedView>& views,
+                                           const TargetShape& square);
 
 // Aspect by the corrected Akaike criterion (Hurvich and Tsai 1989). Coefficients by cross-validation in at most
 // five parts by views: dropped from the highest as long as the held-out error falls by more than

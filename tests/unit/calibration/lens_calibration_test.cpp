@@ -321,8 +321,24 @@ TEST(LensCalibration, APrintedBoardsShapeIsFoundAndNoneIsInvented) {
   const auto square =
       calibrate_lens(test::board_views(lens, setup_of(lens)).target_views, TargetTrust::printed);
   ASSERT_TRUE(square.ok());
-  if (square->shape) {
-    EXPECT_LT(square->shape->change_mm.cwiseAbs().maxCoeff(), 0.05);
+  EXPECT_FALSE(square->shape);
+  EXPECT_FALSE(calibrate_lens(test::board_views(lens, setup_of(lens)).target_views)->doubted_shape);
+  ASSERT_TRUE(exact->doubted_shape);  // said to be exact, and is not
+  EXPECT_LT((exact->doubted_shape->change_mm - shape.change_mm).cwiseAbs().maxCoeff(), 0.05);
+}
+
+// Rows 10 % farther apart than said: without the board's shape the lens would take a focal length 40 % off, with its
+// error stated as 1 %.
+TEST(LensCalibration, ABoardOfAnotherPitchAlongOneSideIsRefused) {
+  const Lens lens = lens_of(180, 300, {-0.02, 0.004, -0.001, 0.0001});
+  auto views = test::board_views(lens, setup_of(lens)).target_views;
+  for (auto& view : views.views)
+    for (auto& p : view.points) p.target_mm.y() *= 0.9;
+  for (const TargetTrust trust : {TargetTrust::exact, TargetTrust::printed}) {
+    const auto found = calibrate_lens(views, trust);
+    ASSERT_FALSE(found.ok());
+    EXPECT_EQ(found.error().kind, ErrorKind::bad_input);
+    EXPECT_THAT(found.error().message, HasSubstr("is the board's size right"));
   }
 }
 
