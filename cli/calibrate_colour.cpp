@@ -42,6 +42,8 @@ int run(const Options& o) {
   }
   const Eigen::Matrix3d& m = fit->rec709_from_camera;
   for (Eigen::Index r = 0; r < 3; ++r) std::printf("  %9.5f %9.5f %9.5f\n", m(r, 0), m(r, 1), m(r, 2));
+  if (!fit->rejected.empty())
+    std::printf("%s is left out: it contradicts all others\n", fit->rejected.c_str());
   std::printf("error %.2f %% of luminance (root mean square), %s kept exactly\n", 100 * fit->rms_error,
               fit->white.c_str());
   return 0;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibration/lens/correspondences.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <set>
@@ -68,6 +69,13 @@ TargetView view_from(const JsonFields& fields, const json& object, std::size_t i
   return view;
 }
 
+bool same_points(const TargetView& a, const TargetView& b) {
+  return !a.points.empty() &&
+         std::ranges::equal(a.points, b.points, [](const Correspondence& p, const Correspondence& q) {
+           return p.pixel == q.pixel && p.target_mm == q.target_mm;
+         });
+}
+
 TargetViews views_from(const json& root, const std::string& file) {
   const JsonFields fields(root, file);
   TargetViews out;
@@ -85,6 +93,11 @@ TargetViews views_from(const json& root, const std::string& file) {
     out.views.push_back(view_from(JsonFields(views[i], file, key), views[i], i, out.image_size));
     if (!names.insert(out.views.back().name).second)
       fields.fail(key + ".name", "= \"" + out.views.back().name + "\" is also the name of a view before it");
+    // Counted twice, a view would make the lens look surer than it is.
+    for (std::size_t k = 0; k < i; ++k)
+      if (same_points(out.views[k], out.views[i]))
+        fields.fail(key + ".points",
+                    "are those of views[" + std::to_string(k) + "], \"" + out.views[k].name + "\", too");
   }
   return out;
 }

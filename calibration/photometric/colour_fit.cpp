@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "calibration/photometric/csv_table.h"
 
@@ -72,6 +73,71 @@ std::size_t white_of(const std::vector<ColourPatch>& patches) {
   return best;
 }
 
+constexpr double kMostGain = 10;     // between the chart's cd/m² and the response's
+constexpr double kMostError = 0.25;  // of the luminance; charts seen by RGB sensors leave 2 to 10 %
+
+Eigen::Vector3d error_of(const Eigen::Matrix3d& matrix, const ColourPatch& p) {
+  return (matrix * p.camera - p.rec709) / (kLuminance * p.rec709);
+}
+
+double rms_error(const Eigen::Matrix3d& matrix, const std::vector<ColourPatch>& patches) {
+  double square = 0;
+  for (const ColourPatch& p : patches) square += error_of(matrix, p).squaredNorm();
+  return std::sqrt(square / static_cast<double>(3 * patches.size()));
+}
+
+// Each row of the matrix: normal equations with the white patch as a Lagrange condition.
+Result<Eigen::Matrix3d> solve_matrix(const std::vector<ColourPatch>& patches, const ColourPatch& white,
+                                     const std::string& name) {
+  const auto bad = [&](const std::string& what) { return Error{ErrorKind::bad_input, name + ": " + what}; };
+  const auto n = static_cast<Eigen::Index>(patches.size());
+  Eigen::MatrixXd camera(n, 3), target(n, 3);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const ColourPatch& p = patches[static_cast<std::size_t>(i)];
+    const double y = kLuminance * p.rec709;
+    camera.row(i) = p.camera.transpose() / y;
+    target.row(i) = p.rec709.transpose() / y;
+  }
+  const Eigen::VectorXd sizes = camera.jacobiSvd().singularValues();
+  if (!(sizes[2] > 1e-4 * sizes[0]))
+    return bad("the camera's colours lie in a plane: allowed patches of red, green and blue beside grey");
+  Eigen::Matrix4d kkt = Eigen::Matrix4d::Zero();
+  kkt.topLeftCorner<3, 3>() = camera.transpose() * camera;
+  const double scale = kkt(0, 0) / white.camera.norm();
+  kkt.topRightCorner<3, 1>() = scale * white.camera;
+  kkt.bottomLeftCorner<1, 3>() = scale * white.camera.transpose();
+  const Eigen::FullPivLU<Eigen::Matrix4d> solver(kkt);
+  Eigen::Matrix3d out;
+  for (Eigen::Index r = 0; r < 3; ++r) {
+    Eigen::Vector4d right;
+    right << camera.transpose() * target.col(r), scale * white.rec709[r];
+    out.row(r) = solver.solve(right).head<3>().transpose();
+  }
+  if (!(out.cwiseAbs().maxCoeff() < 1e3))
+    return bad(
+        "the matrix has coefficients above 1000: allowed patches whose colours the camera tells apart");
+  return out;
+}
+
+// The one patch without which the others agree: their error falls below a third. The white one stays.
+std::optional<std::size_t> contradicting(const std::vector<ColourPatch>& patches, const ColourPatch& white,
+                                         double rms) {
+  constexpr double kAgree = 1.0 / 3;
+  constexpr double kAnyway = 0.02;  // what a good chart and camera leave: nothing is wrong there
+  if (patches.size() <= kFewestPatches + 1 || rms < kAnyway) return {};
+  std::optional<std::size_t> out;
+  double least = kAgree * rms;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (patches[i].name == white.name) continue;
+    std::vector<ColourPatch> others = patches;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    const auto matrix = solve_matrix(others, white, "");
+    if (!matrix) continue;
+    if (const double left = rms_error(*matrix, others); left < least) least = left, out = i;
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<std::vector<ColourPatch>> read_chart(const std::filesystem::path& file, const Response& response) {
@@ -111,61 +177,46 @@ Result<std::vector<ColourPatch>> read_chart(const std::filesystem::path& file, c
 }
 
 Result<ColourFit> fit_colour(const std::vector<ColourPatch>& all, const std::string& name) {
+  const auto bad = [&](const std::string& what) { return Error{ErrorKind::bad_input, name + ": " + what}; };
   std::vector<ColourPatch> patches;
   std::copy_if(all.begin(), all.end(), std::back_inserter(patches),
                [](const ColourPatch& p) { return !p.check; });
   if (patches.size() < kFewestPatches)
-    return Error{ErrorKind::bad_input, name +
-                                           ": number of patches to fit = " + std::to_string(patches.size()) +
-                                           ": allowed at least 4; a chart has 24"};
-  const auto n = static_cast<Eigen::Index>(patches.size());
-  Eigen::MatrixXd camera(n, 3), target(n, 3);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const ColourPatch& p = patches[static_cast<std::size_t>(i)];
-    const double y = kLuminance * p.rec709;
-    camera.row(i) = p.camera.transpose() / y;
-    target.row(i) = p.rec709.transpose() / y;
-  }
-  const Eigen::VectorXd sizes = camera.jacobiSvd().singularValues();
-  if (!(sizes[2] > 1e-4 * sizes[0]))
-    return Error{ErrorKind::bad_input,
-                 name +
-                     ": the camera's colours lie in a plane: allowed patches of red, green "
-                     "and blue beside grey"};
-  const ColourPatch& white = patches[white_of(patches)];
-  // Each row of M: normal equations with the white patch as a Lagrange condition.
-  Eigen::Matrix4d kkt = Eigen::Matrix4d::Zero();
-  kkt.topLeftCorner<3, 3>() = camera.transpose() * camera;
-  const double scale = kkt(0, 0) / white.camera.norm();
-  kkt.topRightCorner<3, 1>() = scale * white.camera;
-  kkt.bottomLeftCorner<1, 3>() = scale * white.camera.transpose();
-  const Eigen::FullPivLU<Eigen::Matrix4d> solver(kkt);
+    return bad("number of patches to fit = " + std::to_string(patches.size()) +
+               ": allowed at least 4; a chart has 24");
+  const ColourPatch white = patches[white_of(patches)];
+  const double gain = kLuminance * white.rec709 / (kLuminance * white.camera);
+  if (!(gain > 1 / kMostGain && gain < kMostGain))
+    return bad("luminance of " + white.name + " = " + std::to_string(kLuminance * white.rec709) +
+               " cd/m2 where the camera's response says " + std::to_string(kLuminance * white.camera) +
+               ": allowed within a factor of " + std::to_string(static_cast<int>(kMostGain)));
+  auto matrix = solve_matrix(patches, white, name);
+  if (!matrix) return matrix.error();
   ColourFit fit;
+  if (const auto wrong = contradicting(patches, white, rms_error(*matrix, patches))) {
+    fit.rejected = patches[*wrong].name;
+    patches.erase(patches.begin() + static_cast<std::ptrdiff_t>(*wrong));
+    matrix = solve_matrix(patches, white, name);
+    if (!matrix) return matrix.error();
+  }
+  fit.rec709_from_camera = *matrix;
   fit.white = white.name;
-  for (Eigen::Index r = 0; r < 3; ++r) {
-    Eigen::Vector4d right;
-    right << camera.transpose() * target.col(r), scale * white.rec709[r];
-    fit.rec709_from_camera.row(r) = solver.solve(right).head<3>().transpose();
-  }
-  if (!(fit.rec709_from_camera.cwiseAbs().maxCoeff() < 1e3))
-    return Error{ErrorKind::bad_input,
-                 name +
-                     ": the matrix has coefficients above 1000: allowed patches whose colours "
-                     "the camera tells apart"};
-  double square = 0;
+  fit.rms_error = rms_error(*matrix, patches);
+  if (!(fit.rms_error < kMostError))
+    return bad("the colours fit no matrix, they are off by " + std::to_string(100 * fit.rms_error) +
+               " % of their luminance: allowed below " + std::to_string(100 * kMostError).substr(0, 2) +
+               " %; are the patches in the chart's order?");
   for (const ColourPatch& p : all) {
-    const double y = kLuminance * p.rec709;
-    const Eigen::Vector3d error = (fit.rec709_from_camera * p.camera - p.rec709) / y;
+    const Eigen::Vector3d error = error_of(*matrix, p);
     fit.residuals.push_back({p.name, p.check, error, kLuminance * error});
-    if (!p.check) square += error.squaredNorm();
   }
-  fit.rms_error = std::sqrt(square / static_cast<double>(3 * n));
   return fit;
 }
 
 nlohmann::ordered_json report_to_json(const ColourFit& fit) {
   nlohmann::ordered_json out = {
       {"schema", "lightwell.colour-fit/1"}, {"white", fit.white}, {"rms_error", fit.rms_error}};
+  if (!fit.rejected.empty()) out["rejected"] = fit.rejected;
   for (Eigen::Index r = 0; r < 3; ++r)
     out["rec709_from_camera"].push_back(
         {fit.rec709_from_camera(r, 0), fit.rec709_from_camera(r, 1), fit.rec709_from_camera(r, 2)});

@@ -23,7 +23,8 @@ struct ColourPatch {
 
 struct ColourFit {
   Eigen::Matrix3d rec709_from_camera = Eigen::Matrix3d::Identity();
-  std::string white;  // the patch that is kept exactly
+  std::string white;     // the patch that is kept exactly
+  std::string rejected;  // the patch left out because the others agree without it; empty: none
   struct Residual {
     std::string name;
     bool check = false;
@@ -40,7 +41,9 @@ struct ColourFit {
 Result<std::vector<ColourPatch>> read_chart(const std::filesystem::path& file, const Response& response);
 
 // The 3×3 that minimises Σ |M camera − rec709|² / Y² and maps white exactly: the patch named so (its name begins with
-// "white"), else the brightest of the least colourful. bad_input: fewer than 4 patches, or camera colours in a plane.
+// "white"), else the brightest of the least colourful. One patch that contradicts all others is left out. bad_input:
+// fewer than 4 patches, camera colours in a plane, a white ten times brighter or darker than the response says, errors
+// above a quarter of the luminance.
 Result<ColourFit> fit_colour(const std::vector<ColourPatch>& patches, const std::string& name_for_errors);
 
 nlohmann::ordered_json report_to_json(const ColourFit& fit);

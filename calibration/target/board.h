@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calibration/lens/correspondences.h"
@@ -32,7 +34,9 @@ struct Detection {
   std::vector<Correspondence> points;  // empty: not found
   std::string reason;                  // why not
   bool of_no_board = false;            // sharp and bright, and not even corners such as a chessboard has
-  bool board_is_larger = false;        // a chessboard that goes on beyond its columns or rows
+  // Inner corners of the whole chessboard that it shows instead.
+  std::optional<std::pair<int, int>> other_size;
+  bool board_is_larger = false;  // a chessboard that goes on beyond its columns or rows
 };
 
 // Finds the board at several scales and refines its corners to a fraction of a pixel.

@@ -103,6 +103,21 @@ std::vector<cv::Point2f> search_by_quads(const cv::Mat& grey, cv::Size size, dou
   return {};
 }
 
+// Corners of a whole rectangle are of another board where they are more than were asked for, or the checks end with
+// them.
+std::optional<std::pair<int, int>> other_board(const cv::Mat& grey, const CornerGrid& grid, int columns,
+                                               int rows) {
+  const auto size = size_of_grid(grid);
+  if (!size) return {};
+  const auto asked = std::minmax(columns, rows), seen = std::minmax(size->first, size->second);
+  if (asked == seen) return {};
+  if (seen.first >= asked.first && seen.second >= asked.second) return size;
+  for (const auto& [c, r] : {*size, std::pair(size->second, size->first)})
+    if (const auto corners = corners_of_board(grid, c, r); !corners.empty())
+      return goes_on(grey, corners, c, r) ? std::nullopt : size;
+  return {};
+}
+
 }  // namespace
 
 ChessboardSearch find_chessboard(const cv::Mat& grey, int columns, int rows) {
@@ -113,17 +128,19 @@ ChessboardSearch find_chessboard(const cv::Mat& grey, int columns, int rows) {
   double check_px = 0;
   // A fisheye's dim and blurred border asks for a small picture, a far board for a large one.
   for (const double factor : {0.5, 1.0, 0.25, 2.0}) {
-    CornerGrid grid = largest_corner_grid(sized, factor);
+    const CornerGrid grid = largest_corner_grid(sized, factor);
     // Boards, hidden ones too, have a cell for most corners; by chance there are chains of corners.
     if (3 * static_cast<std::size_t>(grid.cells) >= grid.corners.size() && grid.cells > cells) {
       cells = grid.cells;
       check_px = median_check_px(grid);
     }
-    out.corners = corners_of_board(std::move(grid), columns, rows);
+    out.corners = corners_of_board(grid, columns, rows);
     if (!out.corners.empty()) break;
+    if (!out.other_size) out.other_size = other_board(sized, grid, columns, rows);
   }
+  if (!out.corners.empty()) out.other_size.reset();
   out.shows_checks = cells >= std::clamp((columns - 1) * (rows - 1) / 3, 2, 20);
-  if (out.corners.empty() && out.shows_checks)
+  if (out.corners.empty() && out.shows_checks && !out.other_size)
     out.corners = search_by_quads(sized, {columns, rows}, check_px);
   // The centre of pixel (0, 0) is the origin at every scale.
   const cv::Point2f half(0.5f, 0.5f);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "calibration/target/board.h"
@@ -11,7 +13,9 @@ namespace lightwell::calibration {
 
 struct ChessboardSearch {
   std::vector<cv::Point2f> corners;  // inner ones, row by row; empty where they are not all found
-  bool shows_checks = false;         // a third of the board's checks, or twenty, hang together somewhere
+  // Columns and rows of a whole board of another size, beyond which the checks do not go on.
+  std::optional<std::pair<int, int>> other_size;
+  bool shows_checks = false;  // a third of the board's checks, or twenty, hang together somewhere
 };
 
 // A picture without checks costs some tenths of a second a megapixel, whatever its texture.

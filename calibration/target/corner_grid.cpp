@@ -231,6 +231,15 @@ CornerGrid largest_corner_grid(const cv::Mat& grey, double scale) {
   return best;
 }
 
+std::optional<std::pair<int, int>> size_of_grid(CornerGrid grid) {
+  if (grid.cells < 4) return {};
+  trim(grid);
+  const Extent e = extent_of(grid);
+  const bool whole = e.columns() >= 3 && e.rows() >= 3 &&
+                     grid.corners.size() == static_cast<std::size_t>(e.columns() * e.rows());
+  return whole ? std::optional(std::pair(e.columns(), e.rows())) : std::nullopt;
+}
+
 std::vector<cv::Point2f> corners_of_board(CornerGrid grid, int columns, int rows) {
   if (columns < 2 || rows < 2 || grid.cells < (columns - 1) * (rows - 1)) return {};
   trim(grid);

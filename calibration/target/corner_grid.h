@@ -4,6 +4,7 @@
 
 #include <map>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct CornerGrid {
 // hang together. Edges are looked for in the picture itself, as dots and lines run together to something like checks
 // where it is made smaller. The number of saddles bounds the time.
 CornerGrid largest_corner_grid(const cv::Mat& grey, double scale);
+
+// Columns and rows of a grid that is a whole rectangle of at least 3 × 3 corners, borders of the background left out.
+std::optional<std::pair<int, int>> size_of_grid(CornerGrid grid);
 
 // The grid's corners, row by row, of a board of columns x rows; empty where it is of another size, or lacks a corner or an edge.
 // Borders with less than half of their corners are of the background. The first corner is one with light in the

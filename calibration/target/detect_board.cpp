@@ -26,6 +26,12 @@ Detection chessboard(const cv::Mat& grey, const Board& board) {
   if (corners.empty()) {
     // Checks would show in a sharp and bright picture even where some are hidden.
     out.of_no_board = !search.shows_checks && is_sharp_and_bright(grey);
+    out.other_size = search.other_size;
+    if (out.other_size) {
+      out.reason = "shows a chessboard of " + std::to_string(out.other_size->first) + "x" +
+                   std::to_string(out.other_size->second) + " inner corners";
+      return out;
+    }
     out.reason = out.of_no_board ? "shows no chessboard" : "no whole " + name(board) + " found";
     return out;
   }

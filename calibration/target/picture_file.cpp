@@ -14,15 +14,17 @@ namespace lightwell::calibration {
 namespace {
 
 constexpr std::size_t kMostPixels = 200'000'000;
+constexpr std::size_t kLeastSide = 32;  // no board of any kind can be read in less
 
 Error bad(const std::filesystem::path& file, const std::string& what) {
   return {ErrorKind::bad_input, file.string() + ": " + what};
 }
 
 Result<GreyPicture> sized(const std::filesystem::path& file, std::size_t width, std::size_t height) {
-  if (width == 0 || height == 0 || width > kMostPixels / height)
-    return bad(file, "has " + std::to_string(width) + "x" + std::to_string(height) +
-                         " pixels, allowed 1 to " + std::to_string(kMostPixels));
+  if (width < kLeastSide || height < kLeastSide || width > kMostPixels / height)
+    return bad(file, "has " + std::to_string(width) + "x" + std::to_string(height) + " pixels, allowed " +
+                         std::to_string(kLeastSide) + " a side to " + std::to_string(kMostPixels) +
+                         " in all");
   return GreyPicture{static_cast<int>(width), static_cast<int>(height),
                      std::vector<std::uint8_t>(width * height)};
 }

@@ -3,6 +3,9 @@
 #include "calibration/target/picture_views.h"
 
 #include <algorithm>
+#include <functional>
+#include <map>
+#include <string_view>
 
 namespace lightwell::calibration {
 namespace {
@@ -16,8 +19,11 @@ std::string size_text(const std::array<int, 2>& size) {
 Result<PictureViews> views_of_pictures(const std::vector<std::string>& files, const Board& board,
                                        const std::function<void(std::size_t)>& done) {
   PictureViews out;
-  std::size_t found = 0, larger = 0;
-  std::string not_of_board;
+  std::size_t found = 0, larger = 0, other = 0;
+  bool larger_other = false;
+  std::string not_of_board, first_other;
+  const std::string corners_asked = std::to_string(board.columns) + "x" + std::to_string(board.rows);
+  std::map<std::size_t, std::size_t> same_pixels;  // hash: picture
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (std::find(files.begin(), files.begin() + static_cast<std::ptrdiff_t>(i), files[i]) !=
         files.begin() + static_cast<std::ptrdiff_t>(i))
@@ -30,15 +36,34 @@ Result<PictureViews> views_of_pictures(const std::vector<std::string>& files, co
       return Error{ErrorKind::bad_input, files[i] + ": has " + size_text(size) + " pixels, allowed " +
                                              size_text(out.target_views.image_size) + " as " + files[0] +
                                              " has"};
+    const auto [same, fresh] = same_pixels.emplace(
+        std::hash<std::string_view>{}(
+            {reinterpret_cast<const char*>(picture->pixels.data()), picture->pixels.size()}),
+        i);
+    if (!fresh)
+      return Error{ErrorKind::bad_input, files[i] + ": is the same picture as " + files[same->second] +
+                                             ", which would count twice"};
     Detection detection = detect_board(*picture, board);
     found += !detection.points.empty();
     larger += detection.board_is_larger;
+    other += detection.other_size.has_value();
+    if (detection.other_size && first_other.empty()) {
+      larger_other = std::minmax(board.columns, board.rows) <=
+                     std::minmax(detection.other_size->first, detection.other_size->second);
+      first_other = files[i] + " " + detection.reason;
+    }
     if (detection.of_no_board && not_of_board.empty()) not_of_board = files[i] + ": " + detection.reason;
     out.target_views.views.push_back({files[i], std::move(detection.points)});
     out.reasons.push_back(detection.reason);
     done(i + 1);
   }
   if (!not_of_board.empty()) return Error{ErrorKind::bad_input, not_of_board};
+  if (2 * other > files.size())
+    return Error{
+        ErrorKind::bad_input,
+        (larger_other ? "the board has more inner corners than " + corners_asked : "no " + name(board)) +
+            ": " + first_other + ", as do " + std::to_string(other) + " of " + std::to_string(files.size()) +
+            " pictures"};
   const bool chess = board.kind == BoardKind::chessboard;
   if (found == 0)
     return Error{ErrorKind::bad_input, "no " + name(board) + " found in any of " +
@@ -46,8 +71,7 @@ Result<PictureViews> views_of_pictures(const std::vector<std::string>& files, co
                                            files.front() + ": is the board's size right" +
                                            (chess ? ", counted in inner corners?" : "?")};
   if (2 * larger > found)
-    return Error{ErrorKind::bad_input, "the board has more inner corners than " +
-                                           std::to_string(board.columns) + "x" + std::to_string(board.rows) +
+    return Error{ErrorKind::bad_input, "the board has more inner corners than " + corners_asked +
                                            ": it goes on beyond them in " + std::to_string(larger) + " of " +
                                            std::to_string(found) + " pictures"};
   return out;

@@ -110,6 +110,9 @@ TEST_F(LensCommand, RefusesPicturesOfAnotherBoardOrOfNone) {
   const std::vector<std::string> few(files.begin(), files.begin() + 5);
   expect_refused(with(few, {"--board", "5x7:32.5"}), 3, "more inner corners");
   expect_refused({files[0], "--board", "7x8:32.5"}, 3, "7x8 chessboard");
+  expect_refused(with(few, {"--board", "9x6:32.5"}), 3, "shows a chessboard of");
+  ASSERT_TRUE(write_file_atomically(path("copy.jpg"), read_text_file(files[0]).value()));
+  expect_refused(with(few, {path("copy.jpg"), "--board", "6x8:32.5"}), 3, "is the same picture as");
   expect_refused(with({files[0], files[1]}, {"--board", "6x8:32.5"}), 3, "2 views");
   expect_refused(with({files[0], files[0], files[1]}, {"--board", "6x8:32.5"}), 3, "twice");
   const auto other = kData / "ocam_matsuren" / "img0.jpg";

@@ -77,6 +77,32 @@ TEST(ColourFit, NoOtherMatrixThatKeepsWhiteIsBetter) {
   }
 }
 
+// A reflection on one patch: the same matrix as without it, to what the noise of the others leaves.
+TEST(ColourFit, OneBadPatchIsLeftOutAndNoGoodOneIs) {
+  for (unsigned seed = 1; seed < 20; ++seed) {
+    auto patches = chart(0.02, seed);
+    const auto clean = fit_colour(patches, "chart.csv");
+    ASSERT_TRUE(clean);
+    EXPECT_EQ(clean->rejected, "");
+    patches[7].camera += Eigen::Vector3d(60, 10, 40);
+    const auto fit = fit_colour(patches, "chart.csv");
+    ASSERT_TRUE(fit) << fit.error().message;
+    EXPECT_EQ(fit->rejected, "patch 7") << seed;
+    patches.erase(patches.begin() + 7);
+    EXPECT_LT((fit->rec709_from_camera - fit_colour(patches, "c.csv")->rec709_from_camera).norm(), 1e-9);
+  }
+}
+
+TEST(ColourFit, PatchesInAnotherOrderAndAnotherScaleAreRefused) {
+  auto patches = chart(0);
+  for (std::size_t i = 0; i < 10; ++i) std::swap(patches[i].rec709, patches[20 - i].rec709);
+  EXPECT_NE(fit_colour(patches, "c.csv").error().message.find("in the chart's order"), std::string::npos);
+  patches = chart(0);
+  for (ColourPatch& p : patches) p.rec709 *= 100;
+  EXPECT_NE(fit_colour(patches, "c.csv").error().message.find("luminance of White = 9000"),
+            std::string::npos);
+}
+
 TEST(ColourFit, TooFewPatchesAndGreyOnesAreRefused) {
   auto patches = chart(0);
   patches.resize(3);

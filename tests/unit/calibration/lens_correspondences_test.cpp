@@ -73,6 +73,9 @@ TEST_F(CorrespondencesFile, NamesTheFieldThatIsWrong) {
   expect_refused(head + "[1,2,3,4,5],[1,2,3,6,7]]}]}", "views[0].points[1]");
   expect_refused(R"({"image_size":[6,4],"views":[{"name":"a","points":[]},{"name":"a","points":[]}]})",
                  "views[1].name");
+  expect_refused(R"({"image_size":[6,4],"views":[{"name":"a","points":[[0,0,0,1,2]]},)"
+                 R"({"name":"b","points":[[0,0,0,1,2]]}]})",
+                 "views[1].points");
 }
 
 }  // namespace
