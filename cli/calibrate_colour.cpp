@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "interface/atomic_file.h"
 #include "interface/calibration_io.h"
+#include "interface/printable.h"
 #include "interface/response_json.h"
 
 namespace lightwell::cli {
@@ -43,7 +44,7 @@ int run(const Options& o) {
   const Eigen::Matrix3d& m = fit->rec709_from_camera;
   for (Eigen::Index r = 0; r < 3; ++r) std::printf("  %9.5f %9.5f %9.5f\n", m(r, 0), m(r, 1), m(r, 2));
   if (!fit->rejected.empty())
-    std::printf("%s is left out: it contradicts all others\n", fit->rejected.c_str());
+    std::printf("%s is left out: it contradicts all others\n", printable(fit->rejected).c_str());
   std::printf("error %.2f %% of luminance (root mean square), %s kept exactly\n", 100 * fit->rms_error,
               fit->white.c_str());
   return 0;
