@@ -76,8 +76,12 @@ std::size_t white_of(const std::vector<ColourPatch>& patches) {
 constexpr double kMostGain = 10;     // between the chart's cd/m² and the response's
 constexpr double kMostError = 0.25;  // of the luminance; charts seen by RGB sensors leave 2 to 10 %
 
+double luminance_of(const Eigen::Vector3d& rec709) {
+  return kLuminance * rec709;
+}
+
 Eigen::Vector3d error_of(const Eigen::Matrix3d& matrix, const ColourPatch& p) {
-  return (matrix * p.camera - p.rec709) / (kLuminance * p.rec709);
+  return (matrix * p.camera - p.rec709) / luminance_of(p.rec709);
 }
 
 double rms_error(const Eigen::Matrix3d& matrix, const std::vector<ColourPatch>& patches) {
@@ -185,10 +189,10 @@ Result<ColourFit> fit_colour(const std::vector<ColourPatch>& all, const std::str
     return bad("number of patches to fit = " + std::to_string(patches.size()) +
                ": allowed at least 4; a chart has 24");
   const ColourPatch white = patches[white_of(patches)];
-  const double gain = kLuminance * white.rec709 / (kLuminance * white.camera);
+  const double gain = luminance_of(white.rec709) / luminance_of(white.camera);
   if (!(gain > 1 / kMostGain && gain < kMostGain))
-    return bad("luminance of " + white.name + " = " + std::to_string(kLuminance * white.rec709) +
-               " cd/m2 where the camera's response says " + std::to_string(kLuminance * white.camera) +
+    return bad("luminance of " + white.name + " = " + std::to_string(luminance_of(white.rec709)) +
+               " cd/m2 where the camera's response says " + std::to_string(luminance_of(white.camera)) +
                ": allowed within a factor of " + std::to_string(static_cast<int>(kMostGain)));
   auto matrix = solve_matrix(patches, white, name);
   if (!matrix) return matrix.error();
@@ -208,7 +212,7 @@ Result<ColourFit> fit_colour(const std::vector<ColourPatch>& all, const std::str
                " %; are the patches in the chart's order?");
   for (const ColourPatch& p : all) {
     const Eigen::Vector3d error = error_of(*matrix, p);
-    fit.residuals.push_back({p.name, p.check, error, kLuminance * error});
+    fit.residuals.push_back({p.name, p.check, error, luminance_of(error)});
   }
   return fit;
 }

@@ -28,8 +28,8 @@ Detection chessboard(const cv::Mat& grey, const Board& board) {
     out.of_no_board = !search.shows_checks && is_sharp_and_bright(grey);
     out.other_size = search.other_size;
     if (out.other_size) {
-      out.reason = "shows a chessboard of " + std::to_string(out.other_size->first) + "x" +
-                   std::to_string(out.other_size->second) + " inner corners";
+      out.reason = "no whole " + name(board) + " found but one of " + std::to_string(out.other_size->first) +
+                   "x" + std::to_string(out.other_size->second) + " inner corners";
       return out;
     }
     out.reason = out.of_no_board ? "shows no chessboard" : "no whole " + name(board) + " found";

@@ -19,9 +19,9 @@ std::string size_text(const std::array<int, 2>& size) {
 Result<PictureViews> views_of_pictures(const std::vector<std::string>& files, const Board& board,
                                        const std::function<void(std::size_t)>& done) {
   PictureViews out;
-  std::size_t found = 0, larger = 0, other = 0;
-  bool larger_other = false;
-  std::string not_of_board, first_other;
+  std::size_t found = 0, larger = 0;
+  std::map<std::pair<int, int>, std::vector<std::size_t>> others;  // boards of another size: their pictures
+  std::string not_of_board;
   const std::string corners_asked = std::to_string(board.columns) + "x" + std::to_string(board.rows);
   std::map<std::size_t, std::size_t> same_pixels;  // hash: picture
   for (std::size_t i = 0; i < files.size(); ++i) {
@@ -46,24 +46,25 @@ Result<PictureViews> views_of_pictures(const std::vector<std::string>& files, co
     Detection detection = detect_board(*picture, board);
     found += !detection.points.empty();
     larger += detection.board_is_larger;
-    other += detection.other_size.has_value();
-    if (detection.other_size && first_other.empty()) {
-      larger_other = std::minmax(board.columns, board.rows) <=
-                     std::minmax(detection.other_size->first, detection.other_size->second);
-      first_other = files[i] + " " + detection.reason;
-    }
+    if (const auto& other = detection.other_size)
+      others[{std::max(other->first, other->second), std::min(other->first, other->second)}].push_back(i);
     if (detection.of_no_board && not_of_board.empty()) not_of_board = files[i] + ": " + detection.reason;
     out.target_views.views.push_back({files[i], std::move(detection.points)});
     out.reasons.push_back(detection.reason);
     done(i + 1);
   }
   if (!not_of_board.empty()) return Error{ErrorKind::bad_input, not_of_board};
-  if (2 * other > files.size())
+  for (const auto& [size, pictures] : others) {
+    if (2 * pictures.size() <= files.size()) continue;
+    const bool larger_one = size.first >= std::max(board.columns, board.rows) &&
+                            size.second >= std::min(board.columns, board.rows);
     return Error{
         ErrorKind::bad_input,
-        (larger_other ? "the board has more inner corners than " + corners_asked : "no " + name(board)) +
-            ": " + first_other + ", as do " + std::to_string(other) + " of " + std::to_string(files.size()) +
-            " pictures"};
+        (larger_one ? "the board has more inner corners than " + corners_asked : "no " + name(board)) + ": " +
+            files[pictures.front()] + " shows a chessboard of " + std::to_string(size.first) + "x" +
+            std::to_string(size.second) + " inner corners, as do " + std::to_string(pictures.size()) +
+            " of " + std::to_string(files.size()) + " pictures"};
+  }
   const bool chess = board.kind == BoardKind::chessboard;
   if (found == 0)
     return Error{ErrorKind::bad_input, "no " + name(board) + " found in any of " +
