@@ -15,7 +15,7 @@ double azimuth_rad(const Vec3d& camera_direction) {
 FieldCoverage field_coverage(const LensCalibration& calibration, const TargetViews& target_views) {
   FieldCoverage out;
   const double field_deg = calibration.lens.max_theta_rad * 180 / kPi;
-  const auto rings = static_cast<std::size_t>(std::ceil(field_deg / out.ring_deg));
+  const auto rings = static_cast<std::size_t>(std::lround(field_deg / out.ring_deg));
   out.points.assign(std::max<std::size_t>(1, rings), std::vector<std::size_t>(FieldCoverage::kSectors, 0));
   for (std::size_t v = 0; v < calibration.views.size(); ++v) {
     const ViewResult& view = calibration.views[v];

@@ -10,7 +10,8 @@
 
 namespace lightwell::calibration {
 
-// Points that count, by zenith angle and azimuth: [ring][sector].
+// Points that count, by angle off axis and azimuth: [ring][sector]. The last ring ends with the field: half a ring
+// or less beyond a whole one belongs to it.
 struct FieldCoverage {
   double ring_deg = 10;
   std::vector<std::vector<std::size_t>> points;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "calibration/lens/field_coverage.h"
 #include "calibration/lens/lens_uncertainty.h"
@@ -18,6 +19,13 @@ constexpr double kDegreesPerRadian = 180 / kPi;
 
 ordered_json number_or_null(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+// 61.5, and 70 without a zero behind it.
+std::string tenths(double degrees) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.12g", std::round(10 * degrees) / 10);
+  return text;
 }
 
 ordered_json view_json(const ViewResult& result, const TargetView& view) {
@@ -130,9 +138,11 @@ std::string coverage_gaps(const LensCalibration& calibration, const TargetViews&
       s = end;
     }
     if (sectors.empty()) continue;
-    const auto deg = static_cast<int>(coverage.ring_deg);
-    out += (out.empty() ? "" : "; ") + std::to_string(static_cast<int>(ring) * deg) + " to " +
-           std::to_string(static_cast<int>(ring + 1) * deg) + " degrees off axis: azimuth " + sectors;
+    const double begin = coverage.ring_deg * static_cast<double>(ring);
+    const double end = ring + 1 < coverage.points.size() ? begin + coverage.ring_deg
+                                                         : calibration.lens.max_theta_rad * kDegreesPerRadian;
+    out += (out.empty() ? "" : "; ") + tenths(begin) + " to " + tenths(end) + " degrees off axis: azimuth " +
+           sectors;
   }
   return out;
 }

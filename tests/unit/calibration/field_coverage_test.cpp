@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibration/lens/field_coverage.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "calibration/lens/lens_report.h"
 #include "tests/support/board_views.h"
 
 namespace lightwell::calibration {
@@ -23,6 +25,23 @@ TEST(FieldCoverage, CountsEveryPointThatCountsOnce) {
   for (std::size_t v = 0; v < views.views.size(); ++v)
     points += views.views[v].points.size() - found->views[v].rejected.size();
   EXPECT_EQ(counted, points);
+}
+
+TEST(FieldCoverage, TheLastRingEndsWithTheField) {
+  LensCalibration calibration;
+  TargetViews none;
+  const auto rings_to = [&](double deg) {
+    calibration.lens.max_theta_rad = deg * kPi / 180;
+    return field_coverage(calibration, none).points.size();
+  };
+  EXPECT_EQ(rings_to(3), 1u);
+  EXPECT_EQ(rings_to(61.5), 6u);
+  EXPECT_THAT(coverage_gaps(calibration, none),
+              testing::EndsWith("50 to 61.5 degrees off axis: azimuth 0 to 360"));
+  EXPECT_EQ(rings_to(66), 7u);
+  EXPECT_THAT(coverage_gaps(calibration, none),
+              testing::EndsWith("60 to 66 degrees off axis: azimuth 0 to 360"));
+  EXPECT_EQ(rings_to(90), 9u);
 }
 
 TEST(Azimuth, GrowsFromTheTopOfTheImageToItsRight) {
