@@ -130,24 +130,15 @@ Status write(const LensOptions& options, const std::string& lens,
   return out->commit();
 }
 
-// What is set after the lens is solved: its field and its tilt.
-Status take_options(calibration::LensCalibration& solved, const LensOptions& options) {
-  if (options.max_theta_deg > 0)
-    if (const Status status = calibration::set_field(solved, options.max_theta_deg * kPi / 180); !status)
-      return usage("--max-theta: " + status.error().message);
-  if (options.gravity.empty()) return {};
-  const auto zenith = zenith_of_option(options.gravity);
-  if (!zenith) return zenith.error();
-  solved.lens.zenith = *zenith;
-  return {};
-}
-
 bool is_exact(const LensOptions& options) {
   return options.target.empty() ? options.pictures.empty() : options.target == "exact";
 }
 
 int run(const LensOptions& options) {
   if (const Status outputs = check_outputs(options); !outputs) return fail(outputs.error());
+  const auto zenith =
+      options.gravity.empty() ? Result<Vec3d>(Lens{}.zenith) : zenith_of_option(options.gravity);
+  if (!zenith) return fail(zenith.error());
   const auto input = read_input(options);
   if (!input) return fail(input.error());
   const calibration::TargetViews& target_views = input->views.target_views;
@@ -156,7 +147,10 @@ int run(const LensOptions& options) {
   if (!solved) return fail({solved.error().kind, input->name + solved.error().message});
   for (std::size_t i = 0; i < input->views.reasons.size(); ++i)
     if (!input->views.reasons[i].empty()) solved->views[i].reason = input->views.reasons[i];
-  if (const Status set = take_options(*solved, options); !set) return fail(set.error());
+  solved->lens.zenith = *zenith;
+  if (options.max_theta_deg > 0)
+    if (const Status set = calibration::set_field(*solved, options.max_theta_deg * kPi / 180); !set)
+      return fail(usage("--max-theta: " + set.error().message));
   // A picture's name may be no UTF-8: its bytes are then replaced.
   const std::string report = calibration::lens_report(*solved, target_views)
                                  .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

@@ -17,6 +17,8 @@ namespace {
 using nlohmann::json;
 
 constexpr double kFarthestMm = 1e9;  // a thousand kilometres; squares of squares stay finite
+// Far more than anybody photographs: above, a file is taken for a mistake, not solved for hours.
+constexpr std::size_t kMostViews = 2000, kMostPoints = 100000;
 
 // "= value: allowed from to to"
 std::string outside(double value, double from, double to, const char* unit) {
@@ -25,10 +27,12 @@ std::string outside(double value, double from, double to, const char* unit) {
   return text;
 }
 
-const json& array_in(const JsonFields& fields, const json& object, const char* key) {
+const json& array_in(const JsonFields& fields, const json& object, const char* key, std::size_t most) {
   if (!object.contains(key)) fields.fail(key, "is missing");
   const json& value = object.at(key);
   if (!value.is_array()) fields.fail(key, "is not an array");
+  if (value.size() > most)
+    fields.fail(key, "has " + std::to_string(value.size()) + ": allowed at most " + std::to_string(most));
   return value;
 }
 
@@ -58,7 +62,7 @@ TargetView view_from(const JsonFields& fields, const json& object, std::size_t i
   TargetView view;
   view.name = fields.has("name") ? fields.text("name") : "view " + std::to_string(index);
   std::set<std::tuple<double, double, double>> places;
-  const json& points = array_in(fields, object, "points");
+  const json& points = array_in(fields, object, "points", kMostPoints);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::string key = "points[" + std::to_string(i) + "]";
     view.points.push_back(point_from(fields, points[i], key, image_size));
@@ -86,7 +90,7 @@ TargetViews views_from(const json& root, const std::string& file) {
       fields.fail("image_size[" + std::to_string(i) + "]", outside(size[i], 1, 16384, "px, a whole number"));
     out.image_size[i] = static_cast<int>(size[i]);
   }
-  const json& views = array_in(fields, root, "views");
+  const json& views = array_in(fields, root, "views", kMostViews);
   std::set<std::string> names;
   for (std::size_t i = 0; i < views.size(); ++i) {
     const std::string key = "views[" + std::to_string(i) + "]";

@@ -31,8 +31,8 @@ struct TargetViews {
 
 // {"image_size": [w, h], "views": [{"name": …, "points": [[X, Y, Z, u, v], …]}]}, mm and pixels. bad_input
 // names file, field and value: numbers that are not finite, places beyond 1e9 mm, pixels further than one image
-// outside the image,
-// two views of one name or of the same points, two points of one view at the same place of the target.
+// outside the image, two views of one name or of the same points, two points of one view at the same place of the
+// target, more than 2000 views or 100000 points of one.
 Result<TargetViews> read_target_views(const std::filesystem::path& file);
 // The same file from what was detected; bytes of a name that are not UTF-8 become U+FFFD.
 std::string to_json(const TargetViews& target_views);

@@ -132,6 +132,8 @@ TEST_F(LensCommand, WrongUsageIsOneLine) {
        {"", "6x8", "6:30", "6x8:0", "6x8:-3", "6x8:nan", "1x8:30", "6x8:30:circles", "6x8:30x", "2x2:3"})
     expect_refused({"a.png", "--board", board}, 2, "--board");
   expect_refused({"a.png", "--board", "6x8:30:charuco", "--marker", "30"}, 2, "--marker");
+  // Before anything is read or solved.
+  expect_refused({"--corners", path("absent.json"), "--gravity", "0,0"}, 2, "--gravity");
 }
 
 TEST_F(LensCommand, BadFilesAreNamed) {

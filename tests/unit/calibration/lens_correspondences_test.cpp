@@ -78,5 +78,23 @@ TEST_F(CorrespondencesFile, NamesTheFieldThatIsWrong) {
                  "views[1].points");
 }
 
+TEST_F(CorrespondencesFile, MoreThanAnybodyPhotographsIsRefused) {
+  const auto views = [](std::size_t n) {
+    TargetViews out{{640, 480}, {}};
+    for (std::size_t i = 0; i < n; ++i) out.views.push_back({std::to_string(i), {}});
+    return to_json(out);
+  };
+  EXPECT_TRUE(read(views(2000)));
+  expect_refused(views(2001), "views has 2001: allowed at most 2000");
+  const auto points = [](std::size_t n) {
+    TargetViews out{{640, 480}, {{"a", {}}}};
+    for (std::size_t i = 0; i < n; ++i)
+      out.views[0].points.push_back({{static_cast<double>(i), 0, 0}, {1, 2}});
+    return to_json(out);
+  };
+  EXPECT_TRUE(read(points(100000)));
+  expect_refused(points(100001), "views[0].points has 100001: allowed at most 100000");
+}
+
 }  // namespace
 }  // namespace lightwell::calibration
