@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "calibration/target/aprilgrid.h"
 #include "calibration/target/board.h"
 #include "calibration/target/chessboard.h"
 #include "calibration/target/markers.h"
@@ -47,15 +48,16 @@ Detection chessboard(const cv::Mat& grey, const Board& board) {
 
 Detection markers(const cv::Mat& grey, const Board& board) {
   Detection out;
-  std::vector<MarkerCorner> found =
+  const std::vector<MarkerCorner> found =
       board.kind == BoardKind::charuco ? find_charuco(grey, board) : find_aprilgrid(grey, board);
   std::vector<cv::Point2f> corners;
   for (const MarkerCorner& corner : found) corners.push_back(corner.pixel);
-  std::vector<double> room = nearest_px(corners);
-  // Beside a ChArUco corner stand the markers, half of what they leave of the pitch away.
-  const double free = board.kind == BoardKind::charuco ? (1 - board.marker_mm / board.pitch_mm) : 1;
-  for (double& px : room) px *= free;
-  refine_corners(grey, room, corners);
+  if (board.kind == BoardKind::charuco) {
+    std::vector<double> room = nearest_px(corners);
+    // Beside a corner stand the markers, half of what they leave of the pitch away.
+    for (double& px : room) px *= 1 - board.marker_mm / board.pitch_mm;
+    refine_corners(grey, room, corners);
+  }
   for (std::size_t i = 0; i < corners.size(); ++i)
     out.points.push_back({found[i].target_mm, {corners[i].x, corners[i].y}});
   if (out.points.empty()) out.reason = "shows no marker of a " + name(board);

@@ -3,7 +3,6 @@
 #include "calibration/target/markers.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -39,56 +38,6 @@ Markers find_markers(const cv::Mat& grey, int dictionary, int border_bits, int c
 
 cv::Point2f centre(const std::vector<cv::Point2f>& corners) {
   return (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
-}
-
-double side_px(const std::vector<cv::Point2f>& c) {
-  return (cv::norm(c[0] - c[2]) + cv::norm(c[1] - c[3])) / (2 * std::sqrt(2.0));
-}
-
-// A fisheye bends a small tag into nearly a parallelogram; one whose outline ran together with a square at its corner
-// is none.
-bool is_whole(const std::vector<cv::Point2f>& c) {
-  constexpr double kMostOff = 0.15;  // sides; a corner at the far end of a square is 0.3 √2 off
-  return cv::norm(c[0] - c[1] + c[2] - c[3]) < kMostOff * side_px(c);
-}
-
-// How the tags lie on the grid: which corner is the first along a row, and whether rows follow each other the way
-// the corners go on, or against it. Votes of neighbours.
-struct GridLayout {
-  std::size_t first_corner = 0;
-  double row_direction = 1;
-};
-GridLayout layout_of(const Markers& tags, int columns) {
-  std::map<int, std::size_t> index;
-  for (std::size_t i = 0; i < tags.ids.size(); ++i) index[tags.ids[i]] = i;
-  std::array<int, 4> first{};
-  for (const auto& [id, i] : index) {
-    const auto next = index.find(id + 1);
-    if (next == index.end() || (id + 1) % columns == 0) continue;
-    const cv::Point2f along = centre(tags.corners[next->second]) - centre(tags.corners[i]);
-    std::size_t best = 0;
-    float most = -1;
-    for (std::size_t c = 0; c < 4; ++c) {
-      const cv::Point2f side = tags.corners[i][(c + 1) % 4] - tags.corners[i][c];
-      if (side.dot(along) > most) {
-        most = side.dot(along);
-        best = c;
-      }
-    }
-    ++first[best];
-  }
-  GridLayout out;
-  out.first_corner = static_cast<std::size_t>(std::max_element(first.begin(), first.end()) - first.begin());
-  int direction = 0;
-  for (const auto& [id, i] : index) {
-    const auto next = index.find(id + columns);
-    if (next == index.end()) continue;
-    const cv::Point2f down =
-        tags.corners[i][(out.first_corner + 2) % 4] - tags.corners[i][(out.first_corner + 1) % 4];
-    direction += down.dot(centre(tags.corners[next->second]) - centre(tags.corners[i])) > 0 ? 1 : -1;
-  }
-  out.row_direction = direction >= 0 ? 1 : -1;
-  return out;
 }
 
 // Where the markers of a ChArUco board stand: row by row in every other square, from the second of the first row on;
@@ -188,27 +137,6 @@ std::vector<MarkerCorner> find_charuco(const cv::Mat& grey, const Board& board) 
   const CharucoLayout today{board, false}, legacy{board, true};
   const bool is_legacy = board.rows % 2 == 0 && disorder(best, legacy) < disorder(best, today);
   return corners_between(best, is_legacy ? legacy : today);
-}
-
-std::vector<MarkerCorner> find_aprilgrid(const cv::Mat& grey, const Board& board) {
-  const int count = board.columns * board.rows;
-  Markers tags = find_markers(grey, cv::aruco::DICT_APRILTAG_36h11, 2, count);
-  if (Markers thin = find_markers(grey, cv::aruco::DICT_APRILTAG_36h11, 1, count);
-      thin.ids.size() > tags.ids.size())
-    tags = std::move(thin);
-  if (tags.ids.size() < 2) return {};
-  const GridLayout layout = layout_of(tags, board.columns);
-  std::vector<MarkerCorner> out;
-  for (std::size_t i = 0; i < tags.ids.size(); ++i) {
-    if (!is_whole(tags.corners[i])) continue;
-    const Vec3d origin(board.pitch_mm * (tags.ids[i] % board.columns),
-                       layout.row_direction * board.pitch_mm * (tags.ids[i] / board.columns), 0);
-    const Vec3d places[4] = {
-        {0, 0, 0}, {board.marker_mm, 0, 0}, {board.marker_mm, board.marker_mm, 0}, {0, board.marker_mm, 0}};
-    for (std::size_t c = 0; c < 4; ++c)
-      out.push_back({origin + places[c], tags.corners[i][(layout.first_corner + c) % 4]});
-  }
-  return out;
 }
 
 }  // namespace lightwell::calibration

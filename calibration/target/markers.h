@@ -18,8 +18,4 @@ struct MarkerCorner {
 // rows, whichever of the two layouts that OpenCV has printed.
 std::vector<MarkerCorner> find_charuco(const cv::Mat& grey, const Board& board);
 
-// Corners of AprilTags 36h11, ids row by row from a corner of the grid, as Kalibr prints them (either row may come
-// first, black borders of one or two bits).
-std::vector<MarkerCorner> find_aprilgrid(const cv::Mat& grey, const Board& board);
-
 }  // namespace lightwell::calibration

@@ -4,38 +4,22 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
-#include <opencv2/aruco.hpp>
-#include <opencv2/imgproc.hpp>
-#include <random>
+#include <set>
+#include <string>
 
 #include "calibration/target/board.h"
 #include "lighting/lens.h"
+#include "tests/support/photographed_board.h"
 
 namespace lightwell::calibration {
 namespace {
 
-// Light at a place on the board, mm, y down; negative where the board is not.
-using Print = std::function<double(double x, double y)>;
-
-// A marker's bits as drawn, with its border: 0 or 1 at a place, in parts of its side.
-class Marker {
- public:
-  Marker(int dictionary, int id, int border_bits) {
-    const auto markers = cv::aruco::getPredefinedDictionary(dictionary);
-    cv::aruco::drawMarker(markers, id, markers->markerSize + 2 * border_bits, bits_, border_bits);
-  }
-  [[nodiscard]] double at(double u, double v) const {
-    return bits_.at<std::uint8_t>(static_cast<int>(v * bits_.rows), static_cast<int>(u * bits_.cols)) ? 1 : 0;
-  }
-
- private:
-  cv::Mat bits_;
-};
+using test::Marker;
+using test::Print;
+using test::View;
 
 // As OpenCV prints it today: the first square is black; before 4.6 it was white where the rows are even.
 Print charuco(const Board& board, bool legacy) {
@@ -59,51 +43,14 @@ Print charuco(const Board& board, bool legacy) {
   };
 }
 
-// A board before a fisheye of 200 degrees, its middle 45 degrees off axis, tilted and turned.
-struct View {
-  Lens lens{{720, 720}, {205, 205}, {355, 362}, {-0.02, 0.002, 0, 0}, 100 * kPi / 180};
-  Eigen::Matrix3d rotation;
-  Vec3d origin;  // of the board's coordinates
+// Field of 200 degrees.
+const Lens kWide{{720, 720}, {205, 205}, {355, 362}, {-0.02, 0.002, 0, 0}, 100 * kPi / 180};
 
-  View(double middle_x, double middle_y, double distance_mm) {
-    const Vec3d sight(std::sin(0.8) * std::cos(0.5), std::sin(0.8) * std::sin(0.5), std::cos(0.8));
-    rotation = Eigen::Quaterniond::FromTwoVectors(Vec3d::UnitZ(), sight).toRotationMatrix() *
-               Eigen::AngleAxisd(0.35, Vec3d(0.6, 0.8, 0)).toRotationMatrix() *
-               Eigen::AngleAxisd(0.4, Vec3d::UnitZ()).toRotationMatrix();
-    origin = distance_mm * sight - rotation * Vec3d(middle_x, middle_y, 0);
-  }
-  [[nodiscard]] Vec2d pixel(const Vec3d& board_mm) const {
-    return lens.project(rotation * board_mm + origin);
-  }
-
-  // Mean of 3 x 3 samples a pixel, then 0.7 px of blur and noise of 2 codes.
-  [[nodiscard]] GreyPicture photograph(const Print& print) const {
-    const Vec3d normal = rotation.col(2);
-    cv::Mat light(720, 720, CV_32F);
-    for (int y = 0; y < 720; ++y)
-      for (int x = 0; x < 720; ++x) {
-        float sum = 0;
-        for (int s = 0; s < 9; ++s) {
-          const Vec3d ray = lens.unproject(Vec2d(x + (s % 3 - 1) / 3.0, y + (s / 3 - 1) / 3.0));
-          const double distance = normal.dot(origin) / normal.dot(ray);
-          const Vec3d board = rotation.transpose() * (distance * ray - origin);
-          const double value =
-              distance > 0 && board.head<2>().norm() < 2000 ? print(board.x(), board.y()) : -1;
-          sum += static_cast<float>(value < 0 ? 0.45 : value) / 9;
-        }
-        light.at<float>(y, x) = sum;
-      }
-    cv::GaussianBlur(light, light, {}, 0.7);
-    std::mt19937 random(5);
-    std::normal_distribution<double> noise(0, 2);
-    GreyPicture out{720, 720, {}};
-    for (int y = 0; y < 720; ++y)
-      for (int x = 0; x < 720; ++x)
-        out.pixels.push_back(
-            cv::saturate_cast<std::uint8_t>(25 + 190 * light.at<float>(y, x) + noise(random)));
-    return out;
-  }
-};
+// A board 45 degrees off the axis of a fisheye, tilted and turned.
+View slanted(double middle_x, double middle_y, double distance_mm) {
+  const Vec3d sight(std::sin(0.8) * std::cos(0.5), std::sin(0.8) * std::sin(0.5), std::cos(0.8));
+  return {kWide, {middle_x, middle_y}, sight, distance_mm, {0.21, 0.28, 0.4}};
+}
 
 // Every point is where its place on the board is seen. Noise of 2 of 190 codes is some 0.02 px on a corner; a window
 // of a few pixels on a bent edge adds up to 0.1 px, and 0.3 px is what calibrations are asked for.
@@ -118,7 +65,7 @@ Board board_of(const std::string& text) {
 
 TEST(Charuco, CornersThroughAFisheyeAreInTheirPlaces) {
   const Board board = board_of("5x7:40:charuco");
-  const View view(100, 140, 250);
+  const View view = slanted(100, 140, 250);
   const Detection found = detect_board(view.photograph(charuco(board, false)), board);
   EXPECT_EQ(found.points.size(), 24u) << found.reason;
   expect_in_place(found, view, {40, 40, 0});
@@ -126,7 +73,7 @@ TEST(Charuco, CornersThroughAFisheyeAreInTheirPlaces) {
 
 TEST(Charuco, BothLayoutsOfEvenRowsAreToldApart) {
   const Board board = board_of("7x6:40:charuco");
-  const View view(140, 120, 240);
+  const View view = slanted(140, 120, 240);
   for (const bool legacy : {false, true}) {
     const Detection found = detect_board(view.photograph(charuco(board, legacy)), board);
     // Of 30; two markers may be lost where the lens makes their bits 2 px small.
@@ -137,7 +84,7 @@ TEST(Charuco, BothLayoutsOfEvenRowsAreToldApart) {
 
 TEST(Charuco, AHiddenPartIsLeftOut) {
   const Board board = board_of("5x7:40:charuco");
-  const View view(100, 140, 250);
+  const View view = slanted(100, 140, 250);
   const Print whole = charuco(board, false);
   const auto hidden = [&](double x, double y) { return x + y > 260 ? 0.5 : whole(x, y); };
   const Detection found = detect_board(view.photograph(hidden), board);
@@ -145,6 +92,73 @@ TEST(Charuco, AHiddenPartIsLeftOut) {
   EXPECT_GE(found.points.size(), 6u);
   EXPECT_LE(found.points.size(), 10u);
   expect_in_place(found, view, {40, 40, 0});
+}
+
+const Lens kNarrow{{720, 720}, {340, 340}, {355, 362}, {0.02, 0.002, 0, 0}, 60 * kPi / 180};
+
+View of_grid(const Lens& lens, double distance_mm) {
+  const Vec3d sight(std::sin(0.8) * std::cos(0.5), std::sin(0.8) * std::sin(0.5), std::cos(0.8));
+  return {lens, {254, -180}, sight, distance_mm, {0.21, 0.28, 0.4}};
+}
+
+// Shortest side of a tag that is wholly in view, px; 0 of one that is not.
+double side_in_view(const View& view, const Board& board, int column, int row) {
+  Vec2d corners[4];
+  for (int k = 0; k < 4; ++k) {
+    const Vec3d place(board.pitch_mm * column + (k == 1 || k == 2 ? board.marker_mm : 0),
+                      -board.pitch_mm * row + (k >= 2 ? board.marker_mm : 0), 0);
+    corners[k] = view.pixel(place);
+    const Vec3d eye = view.rotation * place + view.origin;
+    const bool in_field = std::atan2(eye.head<2>().norm(), eye.z()) < view.lens.max_theta_rad;
+    if (!in_field || corners[k].minCoeff() < 4 || corners[k].maxCoeff() > 715) return 0;
+  }
+  double side = (corners[3] - corners[0]).norm();
+  for (int k = 0; k < 3; ++k) side = std::min(side, (corners[k + 1] - corners[k]).norm());
+  return side;
+}
+
+// Part of the tags in view with sides above `least_px` of which corners were found.
+double part_read(const Detection& found, const View& view, const Board& board, double least_px) {
+  std::set<std::pair<int, int>> read;
+  for (const Correspondence& point : found.points)
+    read.emplace(static_cast<int>(std::floor(point.target_mm.x() / board.pitch_mm)),
+                 -static_cast<int>(std::floor(point.target_mm.y() / board.pitch_mm)));
+  int seen = 0, all = 0;
+  for (int r = 0; r < board.rows; ++r)
+    for (int c = 0; c < board.columns; ++c) {
+      if (side_in_view(view, board, c, r) <= least_px) continue;
+      ++all;
+      seen += read.count({c, r}) > 0;
+    }
+  return static_cast<double>(seen) / all;
+}
+
+TEST(AprilGrid, KalibrsTagsThroughFisheyesAreReadAndTheirCornersInPlace) {
+  const Board board = board_of("6x6:88:aprilgrid");
+  struct Case {
+    const Lens& lens;
+    double distance_mm, least_px, part;
+  };
+  // Nearest, the outer tags of the wide lens are bent and seen at a slant: 19 of 32 are read. Farthest, tags are 14 to
+  // 20 px large: 22 of 36.
+  for (const Case& c : {Case{kNarrow, 250, 25, 0.9}, Case{kWide, 450, 25, 0.9}, Case{kWide, 250, 25, 0.55},
+                        Case{kWide, 700, 14, 0.55}}) {
+    const View view = of_grid(c.lens, c.distance_mm);
+    const Detection found = detect_board(view.photograph(test::april_grid(board)), board);
+    EXPECT_GE(part_read(found, view, board, c.least_px), c.part) << c.lens.focal.x() << " " << c.distance_mm;
+    expect_in_place(found, view, {0, 0, 0});
+  }
+}
+
+TEST(AprilGrid, AHiddenPartIsLeftOut) {
+  const Board board = board_of("6x6:88:aprilgrid");
+  const View view = of_grid(kWide, 450);
+  const Print whole = test::april_grid(board);
+  const Detection found = detect_board(
+      view.photograph([&](double x, double y) { return x - y > 500 ? 0.5 : whole(x, y); }), board);
+  EXPECT_GE(found.points.size(), 40u);
+  for (const Correspondence& point : found.points) EXPECT_LT(point.target_mm.x() - point.target_mm.y(), 500);
+  expect_in_place(found, view, {0, 0, 0});
 }
 
 }  // namespace
