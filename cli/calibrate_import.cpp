@@ -8,6 +8,7 @@
 #include "cli/gravity_option.h"
 #include "interface/atomic_file.h"
 #include "interface/option_range.h"
+#include "interface/printable.h"
 #include "interface/same_file.h"
 
 namespace lightwell::cli {
@@ -17,6 +18,7 @@ struct ImportOptions {
   std::string file;
   std::string format;
   std::string camera;
+  std::string model;
   double max_theta_deg = 0;  // 0: as far as the image shows
   std::string gravity;
   std::string out;
@@ -38,31 +40,39 @@ void print_text(const calibration::SourceLens& source, const calibration::LensCo
   if (c.turn.norm() > 0)
     std::printf("turned            by %.2f degrees against the file's camera frame\n",
                 c.turn.norm() * 180 / kPi);
-  std::printf("field             to %.1f degrees off axis%s\n", c.lens.max_theta_rad * 180 / kPi,
-              o.max_theta_deg > 0
-                  ? ""
-                  : ", the farthest that the image shows; --max-theta ends it at the lens's circle");
+  std::printf("field             to %.1f degrees off axis", c.lens.max_theta_rad * 180 / kPi);
+  if (o.max_theta_deg <= 0)
+    std::printf(", the farthest that the image shows; --max-theta ends it at the lens's circle");
+  if (c.lens.max_theta_rad > c.supported_theta_rad)
+    std::printf(", extrapolated beyond %.1f, the farthest that the image shows",
+                c.supported_theta_rad * 180 / kPi);
+  std::printf("\n");
   std::printf("written           %s\n", o.out.c_str());
 }
 
 int run(const ImportOptions& o) {
   if (const Status other = check_output_is_no_input(o.out, {o.file}); !other) return fail(other.error());
+  const auto zenith = o.gravity.empty() ? Result<Vec3d>(Vec3d::UnitZ()) : zenith_of_option(o.gravity);
+  if (!zenith) return fail(zenith.error());
   calibration::SourceLensOptions options;
   if (!o.format.empty()) options.format = calibration::lens_format(o.format);
   options.camera = o.camera;
+  options.model = o.model;
   const auto source = calibration::read_source_lens(o.file, options);
   if (!source) return fail(source.error());
   const std::optional<double> field =
       o.max_theta_deg > 0 ? std::optional(o.max_theta_deg * kPi / 180) : std::nullopt;
   auto converted = calibration::convert_lens(*source, field);
   if (!converted) return fail({converted.error().kind, o.file + ": " + converted.error().message});
-  if (!o.gravity.empty()) {
-    const auto zenith = zenith_of_option(o.gravity);
-    if (!zenith) return fail(zenith.error());
-    converted->lens.zenith = *zenith;
-  }
+  if (!o.gravity.empty()) converted->lens.zenith = calibration::turned(*converted, *zenith);
   const std::string report = calibration::import_report(*source, *converted).dump();
   if (const Status status = write_file_atomically(o.out, report + "\n"); !status) return fail(status.error());
+  if (source->assumed)
+    std::fprintf(
+        stderr,
+        "lightwell: %s: names no lens model: %s is assumed, which is wrong for a perspective lens; state "
+        "it by --model fisheye\n",
+        printable(o.file).c_str(), source->model.c_str());
   if (o.json)
     std::printf("%s\n", report.c_str());
   else
@@ -89,11 +99,15 @@ Command add_calibrate_import(CLI::App& calibrate) {
                    : "value '" + text + "', allowed opencv, kalibr, ocamcalib, mrcal";
       });
   command->add_option("--camera", o->camera, "Of a Kalibr file with several cameras: cam0, cam1, ..");
+  command->add_option("--model", o->model, "Of an OpenCV file that names none: fisheye|omnidir; else fisheye")
+      ->check(CLI::IsMember({"fisheye", "omnidir"}));
   command
       ->add_option("--max-theta", o->max_theta_deg,
                    "Where the field ends, degrees off axis; else the farthest angle that the image shows")
       ->check(numbers_above_0_to(180, "above 0, at most 180 degrees"));
-  command->add_option("--gravity", o->gravity, kGravityHelp);
+  command->add_option(
+      "--gravity", o->gravity,
+      std::string(kGravityHelp) + ". Of the file's camera: where the import turns it, so is this");
   command->add_option("--out", o->out, "The lens, with the conversion's error, JSON")->required();
   command->add_flag("--json", o->json, "The same on stdout");
   return {command, [o] { return run(*o); }};

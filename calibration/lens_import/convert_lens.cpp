@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kSectors = 72;
 constexpr int kRings = 200;
+constexpr double kStep = kPi / 1440;  // of a search along an azimuth, an eighth of a degree
 
 Vec3d direction_at(double theta, int sector) {
   const double phi = 2 * kPi * (sector + 0.5) / kSectors;
@@ -45,7 +46,6 @@ struct Reach {
   double shows_rad = 0;
 };
 Reach reach_along(const SourceLens& source, const Vec2d& axis, int sector) {
-  constexpr double kStep = kPi / 1440;  // an eighth of a degree
   Reach reach;
   double distance = 0;
   bool left = false;
@@ -162,6 +162,14 @@ double reach_of(const Fit& fit, const std::vector<Sample>& samples) {
   return std::min(farthest, kPi);
 }
 
+// How far the lens is held by what the source shows: a search's step more is no extrapolation.
+double supported_by(const Fit& fit, const std::vector<Sample>& samples, const std::vector<Reach>& reach) {
+  double shown = 0;
+  for (const Reach& r : reach) shown = std::max(shown, r.shows_rad);
+  if (!fit.turn.isIdentity(0)) shown = reach_of(fit, samples);
+  return shown + kStep < fit.lens.max_theta_rad ? shown : fit.lens.max_theta_rad;
+}
+
 // Where a fit begins: the axis and the scale around it.
 Lens start_of(const SourceLens& source, const Vec2d& axis) {
   Lens lens;
@@ -266,8 +274,14 @@ Result<LensConversion> convert_lens(const SourceLens& source, std::optional<doub
     const Eigen::AngleAxisd turn(fit.turn);
     out.turn = turn.angle() * turn.axis();
   }
+  out.supported_theta_rad = supported_by(fit, samples, reach);
   out.error = error_of(fit, samples);
   return out;
+}
+
+Vec3d turned(const LensConversion& conversion, const Vec3d& direction) {
+  const double angle = conversion.turn.norm();
+  return angle > 0 ? Vec3d(Eigen::AngleAxisd(angle, conversion.turn / angle) * direction) : direction;
 }
 
 nlohmann::ordered_json import_report(const SourceLens& source, const LensConversion& conversion) {
@@ -275,6 +289,7 @@ nlohmann::ordered_json import_report(const SourceLens& source, const LensConvers
   nlohmann::ordered_json out;
   for (const char* key : {"schema", "model", "image_size", "focal", "center", "k", "max_theta_deg"})
     out[key] = lens.at(key);
+  out["supported_theta_deg"] = conversion.supported_theta_rad * 180 / kPi;
   if (lens.contains("zenith")) out["zenith"] = lens.at("zenith");
   const ConversionError& e = conversion.error;
   out["imported"] = {{"format", std::string(name(source.format))},
@@ -289,6 +304,7 @@ nlohmann::ordered_json import_report(const SourceLens& source, const LensConvers
                      {"rms_deg", e.rms_deg},
                      {"max_deg", e.max_deg},
                      {"max_at_deg", e.max_at_deg}};
+  if (source.assumed) out["imported"]["assumed"] = source.model;
   return out;
 }
 

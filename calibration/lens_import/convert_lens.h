@@ -28,6 +28,7 @@ struct LensConversion {
   // Angle-axis that turns the source's camera frame into ours, radians. Not 0 where the source's axis and image axes
   // are not the lens's own (mrcal's splines say nothing of either), and a turn halves the error of the fit.
   Vec3d turn = Vec3d::Zero();
+  double supported_theta_rad = 0;  // the farthest that the source shows in its image; beyond, extrapolated
   ConversionError error;
 };
 
@@ -38,6 +39,9 @@ struct LensConversion {
 // usage where the lens does not grow as far as max_theta_rad, with the limit; bad_input where the source shows nothing,
 // or no lens of ours follows it.
 Result<LensConversion> convert_lens(const SourceLens& source, std::optional<double> max_theta_rad);
+
+// A direction of the source's camera frame in ours.
+Vec3d turned(const LensConversion& conversion, const Vec3d& direction);
 
 // lens.json of an imported lens: what the spine reads, and "imported" (docs/conventions.md).
 nlohmann::ordered_json import_report(const SourceLens& source, const LensConversion& conversion);

@@ -50,7 +50,8 @@ std::vector<double> coefficients(const JsonFields& fields, const std::string& of
                        "distortion_coeffs", "DistCoeffs", "dist"});
   std::vector<double> d = matrix_numbers(fields, key);
   if (d.size() != 4)
-    fields.fail(key, "has " + std::to_string(d.size()) + " numbers: allowed 4, those of " + of_model);
+    fields.fail(key, "has " + std::to_string(d.size()) + " numbers: allowed 4, those of " + of_model +
+                         (d.size() > 4 ? "; more are a perspective lens's" : ""));
   return d;
 }
 
@@ -71,25 +72,55 @@ std::array<int, 2> image_size(const JsonFields& fields) {
           side({"image_height", "image_Height", "imageHeight", "height"})};
 }
 
-// A file that names another model is not read as a fisheye's.
-void check_model(const JsonFields& fields) {
-  const auto allow = [&](const char* key, std::initializer_list<std::string_view> models) {
-    if (!fields.has(key)) return;
-    std::string model = fields.text(key);
-    std::transform(model.begin(), model.end(), model.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (std::find(models.begin(), models.end(), model) == models.end())
-      fields.fail(key, "= \"" + model + "\": allowed equidistant, fisheye, kannala_brandt");
+constexpr std::string_view kFisheye = "fisheye", kOmnidir = "omnidir";
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+// The model under a name that a program gives it; empty where it is none of ours.
+std::string_view model_called(std::string_view name) {
+  if (name == kOmnidir) return kOmnidir;
+  for (const std::string_view own : {"equidistant", "fisheye", "kannala_brandt", "kannala-brandt",
+                                     "kannalabrandt", "kb4", "opencv_fisheye"})
+    if (name == own) return kFisheye;
+  return "";
+}
+
+// The model that the file says it is of: by a name, by OpenCV's flag, by the xi that only cv::omnidir has; empty where
+// nothing does, for coefficients of a perspective lens look the same. What contradicts itself or names another model is
+// refused.
+std::string_view stated_model(const JsonFields& fields) {
+  std::string_view stated = fields.has("xi") ? kOmnidir : "";
+  const auto state = [&](const char* key, std::string_view model, const std::string& value) {
+    if (stated == kOmnidir && model == kFisheye && fields.has("xi"))
+      fields.fail(key, value + ": allowed omnidir, as the file has xi");
+    if (!stated.empty() && stated != model)
+      fields.fail(key, value + ": contradicts the " + std::string(stated));
+    stated = model;
   };
-  for (const char* key : {"distortion_model", "model", "projection_model", "model_type"})
-    allow(key, {"equidistant", "fisheye", "kannala_brandt", "kannala-brandt", "kannalabrandt", "kb4",
-                "opencv_fisheye", "omnidir"});
-  allow("camera_model", {"pinhole", "equidistant", "fisheye", "kannala_brandt", "kannala-brandt",
-                         "opencv_fisheye", "omnidir"});
-  for (const char* key : {"fisheye_model", "fisheye"})
-    if (fields.has(key) && fields.is_number(key) && fields.number(key) != 1)
-      fields.fail(key, "= " + std::to_string(static_cast<int>(fields.number(key))) +
+  for (const char* key : {"distortion_model", "model", "projection_model", "model_type", "camera_model"}) {
+    if (!fields.has(key)) continue;
+    const std::string name = lower_case(fields.text(key)), value = "= \"" + name.substr(0, 60) + "\"";
+    if (std::string_view(key) == "camera_model" && name == "pinhole")
+      continue;  // says nothing of coefficients
+    const std::string_view model = model_called(name);
+    if (model.empty()) fields.fail(key, value + ": allowed equidistant, fisheye, kannala_brandt, omnidir");
+    state(key, model, value);
+  }
+  for (const char* key : {"fisheye_model", "fisheye"}) {
+    if (!fields.is_number(key)) continue;
+    if (fields.number(key) != 1)
+      fields.fail(key, "= " + nlohmann::json(fields.number(key)).dump() +
                            ": allowed 1: the coefficients are those of a perspective lens");
+    state(key, kFisheye, "= 1");
+  }
+  return stated;
+}
+
+void require_no_skew(const JsonFields& fields) {
   for (const char* key : {"alpha", "skew"})
     if (fields.has(key) && fields.number(key) != 0)
       fields.fail(key,
@@ -98,15 +129,21 @@ void check_model(const JsonFields& fields) {
 
 }  // namespace
 
-SourceLens opencv_lens(const JsonFields& root) {
-  check_model(root);
+SourceLens opencv_lens(const JsonFields& root, const std::string& model) {
+  const std::string_view stated = stated_model(root);
+  require_no_skew(root);
+  if (!model.empty() && !stated.empty() && model != stated)
+    throw FieldFailure{{ErrorKind::usage, "--model is \"" + model + "\", allowed " + std::string(stated) +
+                                              ", which the file says"}};
   SourceLens out;
   out.format = LensFormat::opencv;
+  out.assumed = stated.empty() && model.empty();
   const PinholePlane plane = camera_matrix(root);
-  const bool omnidir = root.has("xi");
+  const bool omnidir = stated == kOmnidir || model == kOmnidir;
   const std::vector<double> d = coefficients(root, omnidir ? "cv::omnidir" : "cv::fisheye");
   out.image_size = image_size(root);
   if (omnidir) {
+    if (!root.has("xi")) root.fail("xi", "is missing, which cv::omnidir has");
     const std::vector<double> xi =
         root.is_number("xi") ? std::vector<double>{root.number("xi")} : matrix_numbers(root, "xi");
     if (xi.size() != 1 || !(xi[0] >= 0 && xi[0] <= 100)) root.fail("xi", "is not one number from 0 to 100");

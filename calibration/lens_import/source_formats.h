@@ -11,8 +11,8 @@
 namespace lightwell::calibration {
 
 // OpenCV's fisheye model (cv::fisheye) and its omnidirectional one (cv::omnidir), under the names that programs usually
-// give to camera matrix, coefficients and size.
-SourceLens opencv_lens(const JsonFields& root);
+// give to camera matrix, coefficients and size. model: as SourceLensOptions
+SourceLens opencv_lens(const JsonFields& root, const std::string& model);
 // camera: of a file of several, "" for the only one
 SourceLens kalibr_lens(const nlohmann::json& root, const std::string& file, const std::string& camera);
 SourceLens mrcal_lens(const JsonFields& root);

@@ -111,13 +111,16 @@ Result<SourceLens> read_source_lens(const std::filesystem::path& path, const Sou
   if (!options.camera.empty() && *format != LensFormat::kalibr)
     return Error{ErrorKind::usage, "--camera is \"" + options.camera + "\": goes with a Kalibr file, " +
                                        file + " is read as " + std::string(name(*format))};
+  if (!options.model.empty() && *format != LensFormat::opencv)
+    return Error{ErrorKind::usage, "--model is \"" + options.model + "\": goes with an OpenCV file, " + file +
+                                       " is read as " + std::string(name(*format))};
   try {
     if (*format == LensFormat::ocamcalib) return ocamcalib_lens(*text, file);
     const auto root = parse_document(*format, *text, file);
     if (!root) return root.error();
     if (*format == LensFormat::kalibr) return kalibr_lens(*root, file, options.camera);
     const JsonFields fields(*root, file);
-    return *format == LensFormat::mrcal ? mrcal_lens(fields) : opencv_lens(fields);
+    return *format == LensFormat::mrcal ? mrcal_lens(fields) : opencv_lens(fields, options.model);
   } catch (const FieldFailure& failure) {
     return failure.error;
   }

@@ -22,7 +22,8 @@ std::optional<LensFormat> lens_format(std::string_view name);
 // A lens as another program describes it.
 struct SourceLens {
   LensFormat format = LensFormat::opencv;
-  std::string model;  // in that program's words
+  std::string model;     // in that program's words
+  bool assumed = false;  // neither the file nor the user said the model
   std::array<int, 2> image_size = {0, 0};
   Projection project;
   std::optional<Lens> same;  // where the model is ours; without a field
@@ -32,12 +33,13 @@ struct SourceLens {
 
 struct SourceLensOptions {
   std::optional<LensFormat> format;  // none: by the content
-  std::string camera;                // of a file with several; empty: the only one
+  std::string camera = {};           // of a file with several; empty: the only one
+  std::string model = {};  // of an OpenCV file that names none: fisheye, omnidir; empty: fisheye is assumed
 };
 
 // bad_input names file, field, value and what is allowed: a size that is missing, skew, a wrong number of
-// coefficients, numbers that are not finite, a model that is not known. usage: several cameras and none chosen, or one
-// that is not there.
+// coefficients, numbers that are not finite, a model that is not known or at odds with its numbers. usage: several
+// cameras and none chosen, or one that is not there; a model that the file contradicts.
 Result<SourceLens> read_source_lens(const std::filesystem::path& file, const SourceLensOptions& options);
 
 }  // namespace lightwell::calibration

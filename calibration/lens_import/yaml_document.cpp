@@ -22,29 +22,47 @@ json scalar(const YAML::Node& node) {
   return value;
 }
 
-// Nodes are shared by aliases: a small file can stand for an endless one, so they are counted.
-json value_of(const YAML::Node& node, std::size_t& left) {
-  if (left-- == 0) throw YAML::Exception(node.Mark(), "more than a million values");
-  switch (node.Type()) {
-    case YAML::NodeType::Scalar:
-      return scalar(node);
-    case YAML::NodeType::Sequence: {
-      json list = json::array();
-      for (const auto& item : node) list.push_back(value_of(item, left));
-      return list;
-    }
-    case YAML::NodeType::Map: {
-      json map = json::object();
-      for (const auto& item : node) {
-        if (!item.first.IsScalar()) throw YAML::Exception(item.first.Mark(), "a key is not a text");
-        map[item.first.Scalar()] = value_of(item.second, left);
+// Nodes are shared by aliases: a small file can stand for a huge one, or hold itself. Values, their texts and their
+// depth are therefore counted.
+class AliasedNodes {
+ public:
+  json value_of(const YAML::Node& node, int depth) {
+    constexpr int kDeepest = 32;
+    if (depth > kDeepest) throw YAML::Exception(node.Mark(), "too deep");
+    take(1, node.Mark());
+    switch (node.Type()) {
+      case YAML::NodeType::Scalar:
+        take_text(node);
+        return scalar(node);
+      case YAML::NodeType::Sequence: {
+        json list = json::array();
+        for (const auto& item : node) list.push_back(value_of(item, depth + 1));
+        return list;
       }
-      return map;
+      case YAML::NodeType::Map: {
+        json map = json::object();
+        for (const auto& item : node) {
+          if (!item.first.IsScalar()) throw YAML::Exception(item.first.Mark(), "a key is not a text");
+          take_text(item.first);
+          map[item.first.Scalar()] = value_of(item.second, depth + 1);
+        }
+        return map;
+      }
+      default:
+        return nullptr;
     }
-    default:
-      return nullptr;
   }
-}
+
+ private:
+  void take(std::size_t values, const YAML::Mark& mark) {
+    if (values > left_) throw YAML::Exception(mark, "more than a million values");
+    left_ -= values;
+  }
+  // A long text takes the room of many values.
+  void take_text(const YAML::Node& node) { take(node.Scalar().size() / 64, node.Mark()); }
+
+  std::size_t left_ = 1000000;
+};
 
 }  // namespace
 
@@ -53,9 +71,7 @@ Result<json> parse_yaml(const std::string& text, const std::string& file) {
   // OpenCV's first line is not YAML; it becomes a comment, so that lines keep their numbers.
   if (plain.rfind("%YAML:", 0) == 0) plain[0] = '#';
   try {
-    const YAML::Node root = YAML::Load(plain);
-    std::size_t left = 1000000;
-    return value_of(root, left);
+    return AliasedNodes().value_of(YAML::Load(plain), 0);
   } catch (const YAML::Exception& e) {
     const std::string line = e.mark.is_null() ? "" : "line " + std::to_string(e.mark.line + 1) + ": ";
     return Error{ErrorKind::bad_input, file + ": " + line + "is not YAML: " + e.msg};

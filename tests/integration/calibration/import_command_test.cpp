@@ -85,6 +85,24 @@ TEST_F(ImportCommand, RefusesInOneLineAndWritesNothing) {
   expect_refused({"import", camera, "--gravity", "0,0,-9.8"}, 2, "straight down");
 }
 
+TEST_F(ImportCommand, AModelThatIsAssumedIsSaidInOneLineAndInTheFile) {
+  const std::string lens =
+      file("lens.yaml",
+           "image_width: 848\nimage_height: 800\nK: [285.5, 0, 421.25, 0, 286.5, 398.75, 0, 0, "
+           "1]\nD: [-0.0031, 0.0412, -0.0384, 0.0067]\n");
+  const ProcessResult assumed = calibrate({"import", lens, "--max-theta", "80", "--json"});
+  ASSERT_EQ(assumed.exit_code, 0) << assumed.err;
+  EXPECT_THAT(assumed.err, HasSubstr("lens.yaml: names no lens model"));
+  EXPECT_THAT(assumed.err, HasSubstr("--model fisheye"));
+  EXPECT_EQ(std::count(assumed.err.begin(), assumed.err.end(), '\n'), 1) << assumed.err;
+  EXPECT_EQ(json::parse(assumed.out)["imported"]["assumed"], "cv::fisheye");
+  const ProcessResult stated =
+      calibrate({"import", lens, "--model", "fisheye", "--max-theta", "80", "--json"});
+  ASSERT_EQ(stated.exit_code, 0) << stated.err;
+  EXPECT_EQ(stated.err, "");
+  EXPECT_FALSE(json::parse(stated.out)["imported"].contains("assumed"));
+}
+
 TEST_F(ImportCommand, OrientKeepsWhatStandsInTheFileAndTurnsTheWorld) {
   const std::string camera = file("camchain.yaml", kCamera);
   ASSERT_EQ(calibrate({"import", camera, "--max-theta", "80"}).exit_code, 0);

@@ -381,6 +381,61 @@ TEST_F(LensImport, ACameraFrameThatIsTurnedAgainstTheImageIsFound) {
   EXPECT_LT((c->turn - turn).norm(), 1e-6);  // where the solver stops
   EXPECT_LT((c->lens.center - lens.center).norm(), 1e-3);
   EXPECT_LT(c->error.max_px, 1e-3);
+  const Vec3d up(0.1, -0.2, 0.97);
+  EXPECT_LT((turned(*c, up) - ours_from_source * up).norm(), 1e-6);
+}
+
+TEST_F(LensImport, AFieldBeyondWhatTheImageShowsIsExtrapolatedAndSaidToBe) {
+  const auto source = read(kYaml, {{}, "", "fisheye"});
+  ASSERT_TRUE(source.ok()) << source.error().message;
+  const auto shown = convert_lens(*source, {});
+  ASSERT_TRUE(shown.ok()) << shown.error().message;
+  EXPECT_EQ(shown->supported_theta_rad, shown->lens.max_theta_rad);
+  const double wide = shown->lens.max_theta_rad + 0.1, narrow = shown->lens.max_theta_rad - 0.1;
+  const auto beyond = convert_lens(*source, wide), within = convert_lens(*source, narrow);
+  ASSERT_TRUE(beyond.ok()) << beyond.error().message;
+  ASSERT_TRUE(within.ok()) << within.error().message;
+  EXPECT_EQ(beyond->lens.max_theta_rad, wide);
+  EXPECT_NEAR(beyond->supported_theta_rad, shown->lens.max_theta_rad, 1e-12);
+  EXPECT_NEAR(import_report(*source, *beyond)["supported_theta_deg"], beyond->supported_theta_rad * 180 / kPi,
+              1e-12);
+  EXPECT_EQ(within->supported_theta_rad, narrow);
+}
+
+TEST_F(LensImport, AnOpenCvFileThatNamesNoModelIsAssumedToBeAFisheyesAndSaysSo) {
+  const auto assumed = read(kYaml), stated = read(kYaml, {{}, "", "fisheye"});
+  ASSERT_TRUE(assumed.ok() && stated.ok());
+  EXPECT_TRUE(assumed->assumed);
+  EXPECT_FALSE(stated->assumed);
+  EXPECT_EQ(import_report(*assumed, *convert_lens(*assumed, 1.5))["imported"]["assumed"], "cv::fisheye");
+  EXPECT_FALSE(import_report(*stated, *convert_lens(*stated, 1.5))["imported"].contains("assumed"));
+  // A pinhole camera's plane comes before either model.
+  EXPECT_TRUE(read(kYaml + "camera_model: pinhole\n")->assumed);
+  for (const char* name : {"distortion_model: equidistant", "fisheye_model: 1", "model: KB4", "xi: 1.2",
+                           "distortion_model: omnidir\nxi: 1.2"}) {
+    const auto named = read(kYaml + name + "\n");
+    ASSERT_TRUE(named.ok()) << named.error().message;
+    EXPECT_FALSE(named->assumed) << name;
+    EXPECT_EQ(named->model,
+              std::string(name).find("xi") == std::string::npos ? "cv::fisheye" : "cv::omnidir");
+  }
+}
+
+TEST_F(LensImport, AModelAtOddsWithXiOrWithTheOptionIsRefused) {
+  expect_refused(kYaml + "distortion_model: omnidir\n", "xi is missing");
+  expect_refused(kYaml + "distortion_model: fisheye\nxi: 1.2\n", "distortion_model = \"fisheye\"");
+  expect_refused(kYaml + "fisheye_model: 1\nxi: 1.2\n", "fisheye_model = 1: allowed omnidir");
+  expect_refused(kYaml + "model: omnidir\ndistortion_model: fisheye\n", "contradicts");
+  expect_refused(kYaml, "xi is missing", ErrorKind::bad_input, {{}, "", "omnidir"});
+  for (const auto& [line, asked] :
+       {std::pair("model: fisheye\n", "omnidir"), std::pair("xi: 1.2\n", "fisheye")}) {
+    const auto refused = read(kYaml + line, {{}, "", asked});
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().kind, ErrorKind::usage);
+    EXPECT_THAT(refused.error().message, HasSubstr("--model is \"" + std::string(asked)));
+  }
+  expect_refused(kKalibr, "--model", ErrorKind::usage, {{}, "cam0", "fisheye"});
+  expect_refused(replaced(kYaml, "0.0067000000000000002 ]", "0.0067, 0.1 ]"), "perspective");
 }
 
 TEST_F(LensImport, EveryModelThatKalibrWritesIsRead) {
@@ -581,6 +636,30 @@ TEST_F(LensImport, OpenCvsFilesAreRefusedByFieldAndValue) {
   expect_refused("image_width: [\n", "line");
   expect_refused("", "format");
   expect_refused("just a sentence", "format");
+}
+
+TEST_F(LensImport, YamlThatHoldsItselfOrNeverEndsIsRefused) {
+  expect_refused("a: &x [*x]\n", "too deep");
+  expect_refused("a: &x\n  b: *x\n", "too deep");
+  expect_refused("a: &x [[*x], *x]\nb: &y {c: *x, d: *y}\n", "too deep");
+  for (const char* opening : {"[", "{a: ", "- "}) {
+    std::string deep = "a:\n ";
+    for (int i = 0; i < 100000; ++i) deep += opening;
+    expect_refused(deep, "line 2");
+  }
+  std::string forty = "a: ";
+  for (int i = 0; i < 40; ++i) forty += '[';
+  expect_refused(forty + std::string(40, ']') + "\n", "too deep");
+  std::string bomb = "a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n";
+  for (int i = 1; i < 9; ++i) {
+    bomb += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [";
+    for (int n = 0; n < 10; ++n) bomb += (n > 0 ? ", *a" : "*a") + std::to_string(i - 1);
+    bomb += "]\n";
+  }
+  expect_refused(bomb, "more than a million values");
+  std::string texts = "a: &a " + std::string(1 << 16, 'x') + "\nb: [";  // ten thousand of them: 655 MB
+  for (int i = 0; i < 10000; ++i) texts += "*a, ";
+  expect_refused(texts + "1]\n", "more than a million values");
 }
 
 TEST_F(LensImport, KalibrsFilesAreRefusedByFieldAndValue) {
