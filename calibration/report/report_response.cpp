@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calibration/report/html_report.h"
+#include "calibration/report/json_access.h"
 #include "calibration/report/svg_plot.h"
 #include "interface/response_json.h"
 
@@ -21,6 +22,11 @@ struct Range {
   double low = 0.01, high = 1e6;  // cd/m²
 };
 
+// What can be drawn of a luminance, and multiplied by 2; also of one that is not finite.
+double bounded(double luminance) {
+  return luminance > 1e-30 ? std::min(luminance, 1e30) : 1e-30;
+}
+
 Range range_of(const Response& response, const json& fit) {
   double low = 1e300, high = 0;
   for (const char* list : {"fit", "check"})
@@ -28,10 +34,16 @@ Range range_of(const Response& response, const json& fit) {
       for (const json& patch : fit.at(list))
         if (const double l = value_or(patch, "luminance_cd_m2", 0); l > 0)
           low = std::min(low, l), high = std::max(high, l);
-  if (high > 0) return {low / 2, high * 2};
+  if (high > 0) return {bounded(low) / 2, bounded(high) * 2};
   high = response.luminance_cd_m2(response.clip_code);
   low = std::max(response.luminance_cd_m2(response.black_code + 1), high * 1e-9);
-  return {low, high};
+  return {bounded(low), std::max(bounded(high), 2 * bounded(low))};
+}
+
+// An end of a bar; NaN, which is not drawn, where it is not known.
+double end_of(const json& interval, std::size_t end) {
+  const json& value = interval.at(end);
+  return value.is_null() ? NAN : value.get<double>();
 }
 
 std::string curve_plot(const Response& response, const json& fit, const Range& range) {
@@ -51,10 +63,8 @@ std::string curve_plot(const Response& response, const json& fit, const Range& r
       for (const json& patch : fit.at(list)) {
         const double l = value_or(patch, "luminance_cd_m2", 0), code = value_or(patch, "code", 0);
         if (const auto interval = patch.find("interval_95_cd_m2");
-            interval != patch.end() && interval->size() == 2 && (*interval)[0].is_number() &&
-            (*interval)[1].is_number())
-          plot.bar_x(std::max((*interval)[0].get<double>(), range.low), (*interval)[1].get<double>(), code,
-                     "error");
+            interval != patch.end() && !interval->is_null())
+          plot.bar_x(std::max(end_of(*interval, 0), range.low), end_of(*interval, 1), code, "error");
         const bool used = patch.value("used", true);
         plot.dot(l, code,
                  std::string(list) == "check" ? "check"
@@ -83,12 +93,13 @@ std::string error_plot(const json& file, const json& fit, const Range& range) {
   SvgPlot::Points low, high;
   const json& table = file.at("table");
   if (table.contains("relative_sigma")) {
-    const json &sigma = table.at("relative_sigma"), &luminance = table.at("luminance_cd_m2");
-    for (std::size_t i = 0; i < sigma.size() && i < luminance.size(); i += 4) {
-      if (!sigma[i].is_number() || !(luminance[i].get<double>() > 0)) continue;
-      const double width = std::min(100 * t95 * sigma[i].get<double>(), 1000.0);
-      low.emplace_back(luminance[i].get<double>(), -width);
-      high.emplace_back(luminance[i].get<double>(), width);
+    const json &sigma = list_at(table, "relative_sigma"), &luminance = list_at(table, "luminance_cd_m2");
+    for (std::size_t i = 0; i < sigma.size(); i += 4) {
+      const double l = luminance.at(i).get<double>();
+      if (!sigma.at(i).is_number() || !(l > 0)) continue;
+      const double width = std::min(100 * t95 * sigma.at(i).get<double>(), 1000.0);
+      low.emplace_back(l, -width);
+      high.emplace_back(l, width);
     }
     plot.band(low, high, "band");
   }
@@ -98,9 +109,8 @@ std::string error_plot(const json& file, const json& fit, const Range& range) {
       const double l = value_or(patch, "luminance_cd_m2", 0),
                    error = 100 * value_or(patch, "relative_error", NAN);
       if (const auto interval = patch.find("interval_95_cd_m2");
-          l > 0 && interval != patch.end() && (*interval)[0].is_number() && (*interval)[1].is_number())
-        plot.bar_y(l, 100 * ((*interval)[0].get<double>() / l - 1),
-                   100 * ((*interval)[1].get<double>() / l - 1), "error");
+          l > 0 && interval != patch.end() && !interval->is_null())
+        plot.bar_y(l, 100 * (end_of(*interval, 0) / l - 1), 100 * (end_of(*interval, 1) / l - 1), "error");
       plot.dot(l, std::clamp(error, -most, most),
                std::string(list) == "check" ? "check"
                : patch.value("used", true)  ? "fit"
@@ -114,14 +124,15 @@ std::string error_plot(const json& file, const json& fit, const Range& range) {
 std::string verdict_of(const json& file, const json& fit) {
   const auto range = fit.find("usable_range");
   if (range == fit.end() || !range->is_object()) return "";
-  const double low = range->at("luminance_cd_m2")[0].get<double>(),
-               high = range->at("luminance_cd_m2")[1].get<double>();
+  const double low = range->at("luminance_cd_m2").at(0).get<double>(),
+               high = range->at("luminance_cd_m2").at(1).get<double>();
   const double t95 = value_or(fit, "t95", 2);
   double worst = 0;
   const json& table = file.at("table");
-  for (std::size_t i = 0; table.contains("relative_sigma") && i < table.at("relative_sigma").size(); ++i) {
-    const double l = table.at("luminance_cd_m2")[i].get<double>();
-    const json& sigma = table.at("relative_sigma")[i];
+  const json sigmas = list_or_none(table, "relative_sigma");
+  for (std::size_t i = 0; i < sigmas.size(); ++i) {
+    const double l = table.at("luminance_cd_m2").at(i).get<double>();
+    const json& sigma = sigmas.at(i);
     if (l >= low && l <= high && sigma.is_number()) worst = std::max(worst, t95 * sigma.get<double>());
   }
   return formatted("%.1f %%", 100 * worst) + " from " + plain_number(low) + " to " + plain_number(high) +
@@ -151,12 +162,13 @@ std::string warning_of(const json& fit) {
 }
 
 std::string parameters_of(const json& fit) {
-  const json &order = fit.at("parameter_order"), &covariance = fit.at("covariance");
+  const json &order = list_at(fit, "parameter_order"), &covariance = list_at(fit, "covariance");
   const json& values = fit.at("parameters");
   std::string out;
-  for (std::size_t i = 0; i < order.size() && i < covariance.size(); ++i) {
-    const std::string name = order[i].get<std::string>();
-    const std::string sigma = formatted("%.2g", std::sqrt(std::max(0.0, covariance[i][i].get<double>())));
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::string name = order.at(i).get<std::string>();
+    const std::string sigma =
+        formatted("%.2g", std::sqrt(std::max(0.0, covariance.at(i).at(i).get<double>())));
     const auto value = values.find(name);
     out += (i > 0 ? ", " : " ") + escaped(name) +
            (value != values.end() && value->is_number() ? formatted(" = %.6g", value->get<double>())

@@ -13,8 +13,21 @@ constexpr double kLeft = 62, kRight = 14, kTop = 12, kBottom = 46;
 constexpr double kPi = 3.14159265358979323846;
 
 double part(const Axis& axis, double value) {
-  if (axis.logarithmic) return std::log(value / axis.low) / std::log(axis.high / axis.low);
+  if (axis.logarithmic)
+    return (std::log(value) - std::log(axis.low)) / (std::log(axis.high) - std::log(axis.low));
   return (value - axis.low) / (axis.high - axis.low);
+}
+
+// Limits between which steps are numbers: in order, not nearly one, far from the ends of what a double holds.
+Axis drawable(Axis axis) {
+  constexpr double kLargest = 1e300;
+  const double least = axis.logarithmic ? 1 / kLargest : -kLargest;
+  axis.low = axis.low >= least ? std::min(axis.low, kLargest) : least;  // NaN too
+  axis.high = axis.high <= kLargest ? std::max(axis.high, least) : kLargest;
+  const double size = std::max(std::abs(axis.low), std::abs(axis.high));
+  if (axis.high - axis.low > std::max(1e-9 * size, 1e-300)) return axis;
+  axis.high = axis.logarithmic ? 10 * axis.low : axis.low + std::max(1.0, std::abs(axis.low));
+  return axis;
 }
 
 // 1, 2 or 5 times a power of ten, some six of them; of a logarithmic axis the powers of ten.
@@ -30,8 +43,11 @@ std::vector<double> ticks(const Axis& axis) {
   const double raw = (axis.high - axis.low) / 6;
   const double power = std::pow(10, std::floor(std::log10(raw)));
   const double step = power * (raw / power < 2 ? 2 : raw / power < 5 ? 5 : 10);
-  for (double v = std::ceil(axis.low / step - 1e-9) * step; v <= axis.high + 1e-9 * step; v += step)
-    out.push_back(std::abs(v) < 1e-9 * step ? 0 : v);
+  constexpr int kMost = 20;
+  const double first = std::ceil(axis.low / step - 1e-9);
+  for (int i = 0; i < kMost; ++i)
+    if (const double v = (first + i) * step; v <= axis.high + 1e-9 * step)
+      out.push_back(std::abs(v) < 1e-9 * step ? 0 : v);
   return out;
 }
 
@@ -72,6 +88,7 @@ std::string formatted(const char* format, double value) {
 }
 
 std::string plain_number(double value) {
+  if (!std::isfinite(value)) return formatted("%g", value);
   const double size = std::abs(value);
   if (size == 0 || (size >= 1e-3 && size < 99950)) {
     // Three significant digits, none of them an exponent.
@@ -94,9 +111,7 @@ std::string plain_number(double value) {
 }
 
 SvgPlot::SvgPlot(int width, int height, Axis x, Axis y)
-    : width_(width), height_(height), x_(std::move(x)), y_(std::move(y)) {
-  if (!(x_.high > x_.low)) x_.high = x_.logarithmic ? 10 * x_.low : x_.low + 1;
-  if (!(y_.high > y_.low)) y_.high = y_.logarithmic ? 10 * y_.low : y_.low + 1;
+    : width_(width), height_(height), x_(drawable(std::move(x))), y_(drawable(std::move(y))) {
   grid();
 }
 
@@ -200,7 +215,7 @@ std::string polar_cells(int size, const std::vector<std::vector<std::string>>& f
 }
 
 std::string shade(double value) {
-  const double v = std::clamp(value, 0.0, 1.0);
+  const double v = value > 0 ? std::min(value, 1.0) : 0;  // NaN too
   const auto mix = [v](int pale, int dark) {
     return static_cast<int>(std::lround(pale + (dark - pale) * v));
   };
