@@ -146,6 +146,7 @@ bool take_primaries(std::optional<Eigen::Matrix3d>& to_rec709, std::string_view 
   const auto xy = finite_numbers<8>(line.substr(kPrimaries.size()));
   if (!xy) return false;
   const auto& n = *xy;
+  if (std::ranges::all_of(n, [](double value) { return value == 0; })) return true;  // Photoshop's "unknown"
   const Chromaticities space{{n[0], n[1]}, {n[2], n[3]}, {n[4], n[5]}, {n[6], n[7]}};
   to_rec709 = rec709_from(space);
   if (!to_rec709) return false;
