@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration/photometric/flat_fit.h"
+#include "calibration/photometric/take_level.h"
 #include "cli/command.h"
 #include "cli/progress.h"
 #include "interface/atomic_file.h"
@@ -52,6 +53,9 @@ Result<calibration::FlatFit> fit(const Options& o, const Lens& lens, const Respo
     if (!read) return read.error();
     dark = *std::move(read);
   }
+  const bool mosaic = is_bayer(takes[0].mean.format.pixel_format);
+  if (const Status status = calibration::check_field(lens, mosaic); !status)
+    return Error{status.error().kind, o.lens + ": " + status.error().message};
   if (!o.turned_deg.empty()) return fit_turned_flat_field(takes, o.turned_deg, dark, lens, response);
   return fit_flat_field(takes, dark, lens, response);
 }
@@ -82,6 +86,7 @@ void print(const calibration::FlatFit& fit, const Lens& lens) {
   else
     std::printf("scene        even to %.1f %%, %zu pixels, %zu take%s", 100 * fit.tilt, fit.pixels,
                 fit.takes.size(), fit.takes.size() > 1 ? "s" : "");
+  if (fit.masked_pixels > 0) std::printf(", %zu pixels of lamps or dust left out", fit.masked_pixels);
   if (const auto& c = fit.takes[0].mean.temperature_c) std::printf(", %.1f degrees C", *c);
   std::printf("\n");
 }

@@ -63,6 +63,13 @@ int run(const Options& o) {
     return fail({ErrorKind::bad_input,
                  (o.environment.empty() ? o.recording : o.environment) +
                      ": no light at all reaches the meter: allowed a map that is not black there"});
+  if (!(measured->lux > measured->darkness_lux)) {
+    char error[200];
+    std::snprintf(error, sizeof error,
+                  ": %.3g lux in the take, which is dark: allowed above %.3g, one code of light all over",
+                  measured->lux, measured->darkness_lux);
+    return fail({ErrorKind::bad_input, o.recording + error});
+  }
   const double ratio = measured->lux / o.lux;
   if (o.json) {
     const nlohmann::ordered_json json = {{"schema", "lightwell.verify/1"},

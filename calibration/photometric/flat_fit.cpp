@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "calibration/photometric/lamps_and_dust.h"
 #include "calibration/photometric/pixel_pattern.h"
+#include "calibration/photometric/take_level.h"
 #include "calibration/photometric/turning.h"
 #include "calibration/photometric/vignetting_fit.h"
 #include "interface/flat_field_json.h"
@@ -16,6 +18,7 @@ namespace {
 
 constexpr double kMostTilt = 0.2;       // of the scene, from the centre to the edge
 constexpr double kMostClipped = 0.01;   // of the pixels in the field
+constexpr double kMostMasked = 0.05;    // likewise, of lamps and dust
 constexpr double kRounding = 1 / 12.0;  // variance of a code's rounding
 constexpr double kDither = 0.5;         // codes of noise that average it out
 
@@ -43,7 +46,20 @@ Status check_all(const std::vector<FlatTake>& takes, const std::optional<MeanFra
                    take.name + ": another pixel format than " + takes[0].name + ": allowed one"};
   }
   if (!dark) return {};
-  return check_input(*dark, lens, response, "dark frames");
+  const std::string name = dark->name.empty() ? "dark frames" : dark->name;
+  if (const Status status = check_input(*dark, lens, response, name); !status) return status;
+  return check_is_dark(*dark, lens, response, name);
+}
+
+Status check_masked(const CleanFit& clean, const std::vector<FlatTake>& takes) {
+  for (std::size_t t = 0; t < takes.size(); ++t) {
+    const double part = static_cast<double>(clean.masked_in[t]) / static_cast<double>(clean.samples_in[t]);
+    if (part > kMostMasked)
+      return Error{ErrorKind::bad_input, takes[t].name + ": lamps, dust or other uneven places in " +
+                                             std::to_string(100 * part) +
+                                             " % of the field: allowed 5 %; light it evenly"};
+  }
+  return {};
 }
 
 // Adds the samples of one take.
@@ -114,8 +130,8 @@ double shared_sigma(const std::vector<EvenSample>& samples, const VignettingFit&
 }
 
 void set_pattern(FlatFit& out, const std::vector<EvenSample>& samples, const VignettingFit& fit,
-                 const std::vector<FlatTake>& takes, const std::optional<MeanFrame>& dark,
-                 const Response& response) {
+                 const std::vector<std::size_t>& masked, const std::vector<FlatTake>& takes,
+                 const std::optional<MeanFrame>& dark, const Response& response) {
   const auto readings = readings_of(samples, fit, takes, dark, response);
   PixelPattern pattern = fit_pattern(readings, response);
   out.gain_rms = pattern.gain_rms;
@@ -140,6 +156,11 @@ void set_pattern(FlatFit& out, const std::vector<EvenSample>& samples, const Vig
   }
   out.offset_rms_codes = std::sqrt(square / count);
   out.offset_sigma_codes = std::sqrt(noise / count);
+  if (!dark) {
+    std::vector<char> told;
+    for (const auto& of_pixel : readings) told.push_back(!of_pixel.empty());
+    fill_masked(masked, told, takes[0].mean.format.width, out.flat.offset_codes);
+  }
   out.offset_shared_sigma_codes = dark ? 0 : shared_sigma(samples, fit, response);
 }
 
@@ -160,18 +181,24 @@ Result<FlatFit> fit_flat_field(const std::vector<FlatTake>& even, const std::opt
                                const Lens& lens, const Response& response) {
   if (const Status status = check_all(even, dark, lens, response); !status) return status.error();
   const int colours = is_bayer(even[0].mean.format.pixel_format) ? 3 : 1;
-  std::vector<EvenSample> samples;
+  for (const FlatTake& take : even)
+    if (const Status status = check_is_lit(take.mean, lens, response, take.name); !status)
+      return status.error();
+  std::vector<EvenSample> all;
   for (std::size_t t = 0; t < even.size(); ++t)
-    if (const Status status =
-            add_samples(even[t], static_cast<int>(t), colours, dark, lens, response, samples);
+    if (const Status status = add_samples(even[t], static_cast<int>(t), colours, dark, lens, response, all);
         !status)
       return status.error();
   const int takes = static_cast<int>(even.size());
-  const VignettingFit fit = fit_vignetting(samples, response, colours * takes, takes);
+  const CleanFit clean =
+      fit_without_lamps_and_dust(all, response, even[0].mean.format, colours * takes, takes);
+  const VignettingFit& fit = clean.fit;
 
   FlatFit out = with_takes(even, dark, lens);
   out.vignetting_terms = fit.terms;
-  out.pixels = samples.size();
+  out.pixels = clean.samples.size();
+  out.masked_pixels = clean.masked.size();
+  for (std::size_t t = 0; t < even.size(); ++t) out.takes[t].masked_pixels = clean.masked_in[t];
   for (std::size_t t = 0; t < even.size(); ++t)
     for (int c = 0; c < colours; ++c)
       out.takes[t].level_cd_m2[static_cast<std::size_t>(c)] = fit.p[static_cast<int>(t) * colours + c];
@@ -180,11 +207,11 @@ Result<FlatFit> fit_flat_field(const std::vector<FlatTake>& even, const std::opt
   out.covariance.topLeftCorner(fit.terms, fit.terms) =
       fit.covariance.block(fit.levels, fit.levels, fit.terms, fit.terms);
   out.tilt = fit.tilt();
-  if (!(out.tilt < kMostTilt))
-    return Error{ErrorKind::bad_input, even[0].name + ": the scene changes by " +
-                                           std::to_string(100 * out.tilt) +
+  if (const double tilt = std::max(clean.tilt_before, out.tilt); !(tilt < kMostTilt))
+    return Error{ErrorKind::bad_input, even[0].name + ": the scene changes by " + std::to_string(100 * tilt) +
                                            " % from the centre to the edge: allowed 20 %; light it evenly"};
-  set_pattern(out, samples, fit, even, dark, response);
+  if (const Status status = check_masked(clean, even); !status) return status.error();
+  set_pattern(out, clean.samples, fit, clean.masked, even, dark, response);
   if (const Status status = check(out.flat, lens); !status)
     return Error{status.error().kind, even[0].name + ": " + status.error().message};
   return out;
@@ -234,6 +261,7 @@ nlohmann::ordered_json report_to_json(const FlatFit& fit) {
                       {"vignetting_from", fit.turned_deg.empty() ? "even scenes" : "turning"},
                       {"vignetting_terms", fit.vignetting_terms},
                       {"pixels", fit.pixels},
+                      {"masked_pixels", fit.masked_pixels},
                       {"frames", frames},
                       {"exposure_us", fit.takes[0].mean.exposure_us},
                       {"level_cd_m2", fit.takes[0].level_cd_m2},
@@ -256,10 +284,12 @@ nlohmann::ordered_json report_to_json(const FlatFit& fit) {
                          {"frames", take.mean.frames},
                          {"exposure_us", take.mean.exposure_us},
                          {"temperature_c", or_null(take.mean.temperature_c)}};
-    if (fit.turned_deg.empty())
+    if (fit.turned_deg.empty()) {
       json["level_cd_m2"] = take.level_cd_m2;
-    else
+      json["masked_pixels"] = take.masked_pixels;
+    } else {
       json["turned_deg"] = fit.turned_deg[t];
+    }
     out["takes"].push_back(std::move(json));
   }
   return out;

@@ -21,6 +21,7 @@ struct FlatTake {
   std::string name;
   MeanFrame mean;
   std::array<double, 3> level_cd_m2 = {0, 0, 0};  // found: of the even scene on the axis, a colour each
+  std::size_t masked_pixels = 0;                  // found: left out as lamps or dust
 };
 
 struct FlatFit {
@@ -40,14 +41,17 @@ struct FlatFit {
   std::vector<double> turned_deg;  // turning: of each take; empty: the takes are of even scenes
   std::size_t pixels = 0;          // readings that were fitted; turning: places of the scene
   bool from_dark = false;          // the offsets were taken from dark frames
+  std::size_t masked_pixels = 0;   // left out of one take or more as lamps or dust
 };
 
 // Vignetting and fixed pattern from takes of even scenes, of one brightness or several:
 // code = response(gain · level · T(θ)) + offset. Vignetting: fit_vignetting, from all takes together; each may have a tilt
-// of its own. Offset and gain of each pixel: fit_pattern, from what remains of it; without dark frames and with one take
+// of its own. Lamps and dust are masked (fit_without_lamps_and_dust): where no other take and no dark frames tell a masked
+// pixel's offset, it is its column's. Offset and gain of each pixel: fit_pattern, from what remains of it; without dark frames and with one take
 // there is an offset only. With dark frames the offsets come from them (and are good beyond the field too), unless the
 // gains are supported too. Pixels that the border of the field cuts, or beyond, get an offset from dark frames only.
-// bad_input: sizes or bits that do not fit lens and response, fewer than 2 frames, clipped or dark pixels, a scene that is
+// bad_input: sizes or bits that do not fit lens and response, fewer than 2 frames, clipped or dark pixels, dark frames that are not
+// dark or an even scene that is (take_level.h), over a twentieth of the field masked, a scene that is
 // not even (changes by more than a fifth from the centre to the edge).
 Result<FlatFit> fit_flat_field(const std::vector<FlatTake>& even, const std::optional<MeanFrame>& dark,
                                const Lens& lens, const Response& response);

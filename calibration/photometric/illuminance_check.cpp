@@ -18,6 +18,12 @@ double weight_of(const Meter& meter, const Vec3d& direction) {
   return cosine <= 0 ? 0 : meter.cosine ? cosine : 1;
 }
 
+// Light that the sensor tells from darkness by one code; a response without a toe has no code for darkness.
+double darkness_cd_m2(const Response& response) {
+  const double dark = response.code(0);
+  return std::max(0.0, response.luminance_cd_m2((std::isfinite(dark) ? dark : response.black_code) + 1));
+}
+
 double luminance(double r, double g, double b) {
   return 0.2126 * r + 0.7152 * g + 0.0722 * b;
 }
@@ -70,6 +76,9 @@ Result<RecordedIlluminance> recorded_illuminance(const std::filesystem::path& re
       lux += weight[b] * (map.channels == 3 ? luminance(at(0), at(1), at(2)) : at(0));
     }
     ++out.frames;
+    out.darkness_lux =
+        std::max(out.darkness_lux, whole * darkness_cd_m2(calibration.response) *
+                                       calibration.response.reference_exposure_us / frame.exposure_us);
     const double step = lux - out.lux;
     out.lux += step / static_cast<double>(out.frames);
     square += step * (lux - out.lux);

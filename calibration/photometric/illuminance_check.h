@@ -25,6 +25,7 @@ struct RecordedIlluminance {
   double sigma_lux = 0;  // standard deviation over the frames
   std::uint64_t frames = 0;
   std::uint64_t clipped = 0;  // most clipped pixels of a frame: the light is more than measured
+  double darkness_lux = 0;    // of a code above darkness all over the field: less is no light but noise
   double measured_part = 1;   // of the meter's hemisphere, as the meter weighs it
 };
 // Develops every frame. bad_input: not a take, damaged, or of another size or depth than the calibration's.

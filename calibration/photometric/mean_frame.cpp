@@ -67,6 +67,7 @@ Result<MeanFrame> mean_frame(const std::filesystem::path& recording) {
                  recording.string() + ": exposure_us = " + std::to_string((*means)[1].exposure_us) +
                      " in a later frame: allowed " + std::to_string((*means)[0].exposure_us) +
                      ", that of the first frame"};
+  means->front().name = recording.string();
   return std::move(means->front());
 }
 

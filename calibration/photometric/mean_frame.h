@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "calibration/photometric/take_frames.h"
@@ -21,6 +22,7 @@ struct MeanFrame {
   std::uint64_t frames = 0;
   double exposure_us = 0;
   std::optional<double> temperature_c;  // mean, where the camera has one
+  std::string name;                     // the recording, for errors; empty: made otherwise
 };
 
 inline constexpr std::size_t kMostExposures = 32;

@@ -515,6 +515,13 @@ TEST_F(CalibrateFlat, BadInputIsRefusedInOneLineAndNothingIsChanged) {
                      R"("focal":[38,38],"center":[80,60],"k":[0,0,0,0],"max_theta_deg":90})");
   arguments[3] = path("lens.json");
   refused(arguments, "frames of 161x120: allowed 160x120");
+  write("empty.json", R"({"schema":"lightwell.lens/1","model":"kannala-brandt","image_size":[161,120],)"
+                      R"("focal":[1,1],"center":[80,60],"k":[0,0,0,0],"max_theta_deg":0.001})");
+  arguments[3] = path("empty.json");
+  refused(arguments, "empty.json: max_theta_deg = 0.001");
+  arguments = command("even.mkv");
+  arguments.insert(arguments.end(), {"--dark", path("even.mkv")});
+  refused(arguments, "even.mkv: not dark");
   record(sky_, "eight.mkv", 0, "Mono8");
   refused(command("eight.mkv"), "codes of 8 bits: allowed 12");
   // A sky that is bright on one side.
@@ -566,6 +573,11 @@ TEST_F(CalibrateFlat, VerifyRefusesWhatItCannotCompare) {
   EXPECT_EQ(calibrate({"verify", "--lux", "5"}).exit_code, 2);
   EXPECT_EQ(calibrate({"verify", "--lux", "5", "--environment", path("absent.exr")}).exit_code, 3);
   EXPECT_EQ(calibrate({"verify", "--lux", "5", "--environment", constant(0, "black.exr")}).exit_code, 3);
+  record(constant(0, "night.exr"), "black.mkv", 9000);
+  const auto black = calibrate({"verify", "--lux", "903", "--recording", path("black.mkv")});
+  EXPECT_EQ(black.exit_code, 3) << black.out;
+  EXPECT_THAT(black.err, testing::HasSubstr("black.mkv"));
+  EXPECT_THAT(black.err, testing::HasSubstr("which is dark"));
   const std::string whole = *read_text_file(path("even.mkv"));
   const auto cut =
       calibrate({"verify", "--lux", "5", "--recording", write("cut.mkv", whole.substr(0, whole.size() / 2)),
