@@ -10,6 +10,7 @@
 #include "cli/progress.h"
 #include "interface/atomic_file.h"
 #include "interface/exr_file.h"
+#include "interface/same_file.h"
 
 namespace lightwell::cli {
 namespace {
@@ -20,6 +21,34 @@ struct Options {
   std::string out, radiance, solver = "debevec";
   bool json = false;
 };
+
+Status check_outputs(const Options& o) {
+  if (!o.radiance.empty() && o.radiance == o.out)
+    return usage("--radiance and --out name one file, " + o.out + ", allowed two");
+  for (const std::string& output : {o.out, o.radiance})
+    for (const std::string& image : o.images)
+      if (const Status status = check_output_is_no_input(output, {image}); !status) return status;
+  return {};
+}
+
+// Both files or neither: nothing is renamed into place before both are written.
+Status write(const Options& o, const std::vector<calibration::Photograph>& photographs,
+             const calibration::BracketFit& fit) {
+  auto out = AtomicFileWriter::create(o.out);
+  if (!out) return out.error();
+  if (Status status = out->append(calibration::bracket_response_file(fit)); !status) return status;
+  if (o.radiance.empty()) return out->commit();
+  const auto& picture = photographs.front().picture;
+  const auto exr =
+      exr_from_floats(picture.width, picture.height, "RGB",
+                      calibration::merge_brackets(photographs, fit.response), ExrContent::picture);
+  if (!exr) return exr.error();
+  auto radiance = AtomicFileWriter::create(o.radiance);
+  if (!radiance) return radiance.error();
+  if (Status status = radiance->append(*exr); !status) return status;
+  if (Status status = radiance->commit(); !status) return status;
+  return out->commit();
+}
 
 Result<std::vector<calibration::Photograph>> read_all(const Options& o) {
   constexpr int kShrink = 4;  // a mean of 16 pixels: less noise, and a ninth picture still fits into memory
@@ -43,22 +72,18 @@ Result<std::vector<calibration::Photograph>> read_all(const Options& o) {
 int run(const Options& o) {
   if (o.solver != "debevec" && o.solver != "robertson")
     return fail(usage("--solver = " + o.solver.substr(0, 40) + ": allowed debevec, robertson"));
+  if (const Status outputs = check_outputs(o); !outputs) return fail(outputs.error());
+  if (const Status number = calibration::check_number_of_photographs(o.images.size()); !number)
+    return fail(number.error());
   auto photographs = read_all(o);
   if (!photographs) return fail(photographs.error());
   const auto fit =
       calibration::fit_brackets(*photographs, o.solver == "debevec" ? calibration::BracketSolver::debevec
                                                                     : calibration::BracketSolver::robertson);
   if (!fit) return fail(fit.error());
-  if (!o.radiance.empty()) {
-    const auto& picture = photographs->front().picture;
-    const auto exr =
-        exr_from_floats(picture.width, picture.height, "RGB",
-                        calibration::merge_brackets(*photographs, fit->response), ExrContent::picture);
-    if (!exr) return fail(exr.error());
-    if (const Status status = write_file_atomically(o.radiance, *exr); !status) return fail(status.error());
-  }
-  if (const Status status = write_file_atomically(o.out, calibration::bracket_response_file(*fit)); !status)
-    return fail(status.error());
+  if (const Status status = write(o, *photographs, *fit); !status) return fail(status.error());
+  if (const std::string warning = calibration::channel_warning(*fit); !warning.empty())
+    std::fprintf(stderr, "lightwell: %s\n", warning.c_str());
   if (o.json) {
     std::printf("%s\n", calibration::report_to_json(*fit)
                             .dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
@@ -68,7 +93,9 @@ int run(const Options& o) {
   for (const auto& p : fit->predictions)
     std::printf("%s  %10.6f s  foretold from the others to %.2f %% (median of %zu pixels)\n", p.file.c_str(),
                 p.exposure_s, 100 * p.median_error, p.pixels);
-  std::printf("median error %.2f %%; %s\n", 100 * fit->median_error,
+  const auto& of = fit->channel_median_error;
+  std::printf("median error %.2f %% (red %.2f, green %.2f, blue %.2f) by the curve of green; %s\n",
+              100 * fit->median_error, 100 * of[0], 100 * of[1], 100 * of[2],
               fit->absolute ? "cd/m2 by aperture and ISO: check with `calibrate verify`"
                             : "luminance in units of mid grey, as no aperture and ISO are known");
   return 0;

@@ -10,6 +10,7 @@
 #include "interface/calibration_io.h"
 #include "interface/printable.h"
 #include "interface/response_json.h"
+#include "interface/same_file.h"
 
 namespace lightwell::cli {
 namespace {
@@ -20,6 +21,8 @@ struct Options {
 };
 
 int run(const Options& o) {
+  // Not --response: adding the matrix to that file is the usual way.
+  if (const Status status = check_output_is_no_input(o.out, {o.chart}); !status) return fail(status.error());
   const auto response = read_response(o.response);
   if (!response) return fail(response.error());
   const auto patches = calibration::read_chart(o.chart, *response);
@@ -31,7 +34,9 @@ int run(const Options& o) {
   if (!text) return fail(text.error());
   auto file = parse_json(*text, o.response);
   if (!file) return fail(file.error());
+  file->erase("rec709_from_camera");  // of the identity none is written
   add_colour_matrix(*file, fit->rec709_from_camera);
+  (*file)["rec709_from_camera_is"] = "colour chart";
   const std::string report =
       calibration::report_to_json(*fit).dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
   (*file)["colour"] = nlohmann::json::parse(report);

@@ -73,6 +73,14 @@ void print(const calibration::FlatFit& fit, const Lens& lens) {
                 fit.from_dark ? "dark frames" : "the even frames");
   else
     std::printf("offsets      none: they need --dark\n");
+  if (fit.from_dark) {
+    const auto& d = fit.dark_level_error_codes;
+    if (is_bayer(fit.takes[0].mean.format.pixel_format))
+      std::printf("darkness     %+.2f %+.2f %+.2f codes (red, green, blue)", d[0], d[1], d[2]);
+    else
+      std::printf("darkness     %+.2f codes", d[0]);
+    std::printf(" from where the response has it; not counted as offsets\n");
+  }
   if (!fit.flat.gain.empty())
     std::printf("gains        %.2f %% rms, known to %.2f %%\n", 100 * fit.gain_rms, 100 * fit.gain_sigma);
   else if (std::isfinite(fit.gain_sigma))

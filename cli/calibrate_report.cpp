@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "calibration/report/html_report.h"
 #include "cli/command.h"
 #include "interface/atomic_file.h"
+#include "interface/same_file.h"
 
 namespace lightwell::cli {
 
@@ -23,6 +25,12 @@ Command add_calibrate_report(CLI::App& group) {
       ->required()
       ->type_name("FILE.html");
   return {command, [options] {
+            const std::filesystem::path directory = options->directory;
+            if (const Status status = check_output_is_no_input(
+                    options->out,
+                    {directory / "response.json", directory / "lens.json", directory / "flat.json"});
+                !status)
+              return fail(status.error());
             const auto page = calibration::calibration_page(options->directory);
             if (!page) return fail(page.error());
             if (const Status status = write_file_atomically(options->out, *page); !status)

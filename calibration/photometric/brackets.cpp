@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <opencv2/photo.hpp>
 
@@ -197,8 +198,7 @@ double reference_of(const std::vector<const Photograph*>& photos) {
 
 Status check_set(const std::vector<Photograph>& photos) {
   const auto bad = [](const std::string& what) { return Error{ErrorKind::bad_input, what}; };
-  if (photos.size() < 3)
-    return bad("number of photographs = " + std::to_string(photos.size()) + ": allowed at least 3");
+  if (const Status status = check_number_of_photographs(photos.size()); !status) return status;
   for (const Photograph& p : photos) {
     if (p.picture.width != photos[0].picture.width || p.picture.height != photos[0].picture.height)
       return bad(p.file + ": its size differs from that of " + photos[0].file + ": allowed one size");
@@ -216,6 +216,7 @@ Status check_set(const std::vector<Photograph>& photos) {
 Status foretell(const std::vector<const Photograph*>& all, const std::array<Comparison, 3>& comparisons,
                 BracketSolver solver, BracketFit& fit) {
   std::vector<float> errors;
+  std::array<std::vector<float>, 3> of_channel;
   for (std::size_t fold = 0; fold < 3; ++fold) {
     std::vector<std::size_t> kept, held;
     std::vector<const Photograph*> kept_photos;
@@ -233,13 +234,14 @@ Status foretell(const std::vector<const Photograph*>& all, const std::array<Comp
     for (const std::size_t h : held) {
       const Photograph& p = *all[h];
       std::vector<float> own;
-      for (std::size_t i = kGreen; i < p.picture.rgb.size(); i += 3) {
+      for (std::size_t i = 0; i < p.picture.rgb.size(); ++i) {
         const int code = p.picture.rgb[i];
         if (code <= kLow || code >= kHigh) continue;
         const double foretold = merged(kept_photos, luminance, i, 1);
         if (!(foretold > 0)) continue;
         const double seen = luminance[static_cast<std::size_t>(code)] / p.exposure_s;
         own.push_back(static_cast<float>(std::abs(foretold / seen - 1)));
+        of_channel[i % 3].push_back(own.back());
       }
       errors.insert(errors.end(), own.begin(), own.end());
       const std::size_t count = own.size();
@@ -247,10 +249,17 @@ Status foretell(const std::vector<const Photograph*>& all, const std::array<Comp
     }
   }
   fit.median_error = median_of(errors);
+  for (std::size_t c = 0; c < 3; ++c) fit.channel_median_error[c] = median_of(of_channel[c]);
   return {};
 }
 
 }  // namespace
+
+Status check_number_of_photographs(std::size_t count) {
+  if (count >= 3 && count <= kMostPhotographs) return {};
+  return Error{ErrorKind::bad_input, "number of photographs = " + std::to_string(count) + ": allowed 3 to " +
+                                         std::to_string(kMostPhotographs)};
+}
 
 Result<BracketFit> fit_brackets(std::vector<Photograph> photographs, BracketSolver solver) {
   std::sort(photographs.begin(), photographs.end(),
@@ -307,12 +316,28 @@ std::vector<float> merge_brackets(const std::vector<Photograph>& photographs, co
   return out;
 }
 
+std::string channel_warning(const BracketFit& fit) {
+  constexpr double kMostSpread = 0.1;
+  const double spread = std::max(fit.channel_spread[0], fit.channel_spread[2]);
+  if (spread <= kMostSpread) return {};
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "the curves of red and blue differ from green's by %.0f %% and %.0f %%, and green's is written: "
+      "colours change with brightness",
+      100 * fit.channel_spread[0], 100 * fit.channel_spread[2]);
+  return text;
+}
+
 nlohmann::ordered_json report_to_json(const BracketFit& fit) {
-  nlohmann::ordered_json out = {{"schema", "lightwell.bracket-fit/1"},
-                                {"median_error", fit.median_error},
-                                {"absolute", fit.absolute},
-                                {"channel_spread", fit.channel_spread},
-                                {"predictions", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json out = {
+      {"schema", "lightwell.bracket-fit/1"},
+      {"median_error", fit.median_error},
+      {"channel_median_error", fit.channel_median_error},
+      {"error_of", "all channels by green's curve, photographs at a quarter of their size"},
+      {"absolute", fit.absolute},
+      {"channel_spread", fit.channel_spread},
+      {"predictions", nlohmann::ordered_json::array()}};
   for (const Prediction& p : fit.predictions)
     out["predictions"].push_back({{"file", p.file},
                                   {"exposure_s", p.exposure_s},

@@ -27,35 +27,44 @@ struct Photograph {
 // shrink: see decode_jpeg. bad_input: unreadable, not a JPEG, no exposure time anywhere.
 Result<Photograph> read_photograph(const std::filesystem::path& file, double exposure_s, int shrink);
 
+inline constexpr std::size_t kMostPhotographs = 30;  // every one is compared with every other
+// bad_input: too few or too many; to be asked before they are read.
+Status check_number_of_photographs(std::size_t count);
+
 enum class BracketSolver { debevec, robertson };
 
 // How well the response from other exposures foretells a photograph that was not used.
 struct Prediction {
   std::string file;
   double exposure_s = 0;
-  double median_error = 0;  // relative, of the luminance of unclipped pixels
+  double median_error = 0;  // relative, of the unclipped pixels of all three channels
   std::size_t pixels = 0;
 };
 
 struct BracketFit {
   Response response;  // piecewise linear through the 8 bit codes, of green
   std::vector<Prediction> predictions;
-  double median_error = 0;  // over the pixels of all of them
-  bool absolute = false;    // scaled by aperture and ISO (ISO 2720, K = 12.5); else 1 at code 118
+  double median_error = 0;  // over the pixels and channels of all of them, by the curve of green
+  std::array<double, 3> channel_median_error = {0, 0, 0};  // of red, green, blue alone
+  bool absolute = false;  // scaled by aperture and ISO (ISO 2720, K = 12.5); else 1 at code 118
   std::array<double, 3> channel_spread = {0, 0,
                                           0};  // median relative difference of each colour's curve from green
 };
 
 // OpenCV's Debevec–Malik or Robertson solver, given not single pixels but medians: what the pixels of one code in one
 // photograph have in the others. The curve is made to increase (pooling adjacent violators). The reported error is that
-// of exposures which were kept out of a fit and foretold by it; the response itself is of all. With more than some two
+// of exposures which were kept out of a fit and foretold by it, all three channels by the curve of green as
+// merge_brackets has them, at the size that the photographs were decoded to; the response itself is of all. With more than some two
 // stops between neighbours the pictures overlap too little to tell the curve. Robertson's does not smooth: with even
 // steps it keeps, of its straight start, what repeats from step to step.
-// bad_input: fewer than 3 photographs or exposures, different sizes, codes that do not follow the exposures.
+// bad_input: fewer than 3 photographs or exposures, more than kMostPhotographs, different sizes, codes that do not follow the exposures.
 Result<BracketFit> fit_brackets(std::vector<Photograph> photographs, BracketSolver solver);
 
 // Radiance of every pixel, [height][width][3], from the exposures in which it is neither dark nor clipped.
 std::vector<float> merge_brackets(const std::vector<Photograph>& photographs, const Response& response);
+
+// A line for a person where red's or blue's curve is not green's, which the response is; else empty.
+std::string channel_warning(const BracketFit& fit);
 
 nlohmann::ordered_json report_to_json(const BracketFit& fit);
 std::string bracket_response_file(const BracketFit& fit);

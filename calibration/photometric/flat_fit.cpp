@@ -62,6 +62,48 @@ Status check_masked(const CleanFit& clean, const std::vector<FlatTake>& takes) {
   return {};
 }
 
+// The mean of the middle half: hot pixels, and dead ones, do not count.
+double middle_mean(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t cut = values.size() / 4;
+  double sum = 0;
+  for (std::size_t i = cut; i < values.size() - cut; ++i) sum += values[i];
+  return sum / static_cast<double>(values.size() - 2 * cut);
+}
+
+// Dark frames whose level in the field is the response's code of darkness, a colour each, so that only the pattern is
+// left: the response was not measured in darkness, and what its toe errs there would be an offset of every pixel.
+struct Darkness {
+  std::optional<MeanFrame> mean;
+  std::array<double, 3> level_error_codes = {0, 0, 0};  // taken out
+};
+
+Result<Darkness> aligned(const std::optional<MeanFrame>& dark, const Lens& lens, const Response& response) {
+  Darkness out;
+  if (!dark) return out;
+  const double dark_code = response.code(0);
+  if (!std::isfinite(dark_code))
+    return Error{
+        ErrorKind::bad_input,
+        "response: parameters.c = 0, so that darkness has no code: allowed above 0 with dark frames; "
+        "calibrate the response with a darker patch, or leave the dark frames out"};
+  out.mean = dark;
+  const auto width = static_cast<std::size_t>(dark->format.width);
+  const auto colour = [&](std::size_t i) {
+    return static_cast<std::size_t>(
+        colour_of(dark->format, static_cast<int>(i % width), static_cast<int>(i / width)));
+  };
+  std::array<std::vector<double>, 3> codes;
+  for (std::size_t i = 0; i < dark->code.size(); ++i)
+    if (lens.theta_rad(Vec2d(static_cast<double>(i % width), static_cast<double>(i / width))) <
+        lens.max_theta_rad)
+      codes[colour(i)].push_back(dark->code[i]);
+  for (std::size_t c = 0; c < 3; ++c)
+    if (!codes[c].empty()) out.level_error_codes[c] = middle_mean(std::move(codes[c])) - dark_code;
+  for (std::size_t i = 0; i < dark->code.size(); ++i) out.mean->code[i] -= out.level_error_codes[colour(i)];
+  return out;
+}
+
 // Adds the samples of one take.
 Status add_samples(const FlatTake& take, int index, int colours, const std::optional<MeanFrame>& dark,
                    const Lens& lens, const Response& response, std::vector<EvenSample>& samples) {
@@ -164,22 +206,25 @@ void set_pattern(FlatFit& out, const std::vector<EvenSample>& samples, const Vig
   out.offset_shared_sigma_codes = dark ? 0 : shared_sigma(samples, fit, response);
 }
 
-FlatFit with_takes(const std::vector<FlatTake>& takes, const std::optional<MeanFrame>& dark,
-                   const Lens& lens) {
+FlatFit with_takes(const std::vector<FlatTake>& takes, const Darkness& darkness, const Lens& lens) {
   FlatFit out;
   out.flat.image_size = lens.image_size;
   out.takes = takes;
   for (FlatTake& take : out.takes) take.mean.code.clear(), take.mean.sigma.clear();
-  out.from_dark = dark.has_value();
-  if (dark) out.dark_temperature_c = dark->temperature_c;
+  out.from_dark = darkness.mean.has_value();
+  if (out.from_dark) out.dark_temperature_c = darkness.mean->temperature_c;
+  out.dark_level_error_codes = darkness.level_error_codes;
   return out;
 }
 
 }  // namespace
 
-Result<FlatFit> fit_flat_field(const std::vector<FlatTake>& even, const std::optional<MeanFrame>& dark,
+Result<FlatFit> fit_flat_field(const std::vector<FlatTake>& even, const std::optional<MeanFrame>& dark_frames,
                                const Lens& lens, const Response& response) {
-  if (const Status status = check_all(even, dark, lens, response); !status) return status.error();
+  if (const Status status = check_all(even, dark_frames, lens, response); !status) return status.error();
+  const auto darkness = aligned(dark_frames, lens, response);
+  if (!darkness) return darkness.error();
+  const std::optional<MeanFrame>& dark = darkness->mean;
   const int colours = is_bayer(even[0].mean.format.pixel_format) ? 3 : 1;
   for (const FlatTake& take : even)
     if (const Status status = check_is_lit(take.mean, lens, response, take.name); !status)
@@ -194,7 +239,7 @@ Result<FlatFit> fit_flat_field(const std::vector<FlatTake>& even, const std::opt
       fit_without_lamps_and_dust(all, response, even[0].mean.format, colours * takes, takes);
   const VignettingFit& fit = clean.fit;
 
-  FlatFit out = with_takes(even, dark, lens);
+  FlatFit out = with_takes(even, *darkness, lens);
   out.vignetting_terms = fit.terms;
   out.pixels = clean.samples.size();
   out.masked_pixels = clean.masked.size();
@@ -219,14 +264,17 @@ Result<FlatFit> fit_flat_field(const std::vector<FlatTake>& even, const std::opt
 
 Result<FlatFit> fit_turned_flat_field(const std::vector<FlatTake>& takes,
                                       const std::vector<double>& turned_deg,
-                                      const std::optional<MeanFrame>& dark, const Lens& lens,
+                                      const std::optional<MeanFrame>& dark_frames, const Lens& lens,
                                       const Response& response) {
-  if (const Status status = check_all(takes, dark, lens, response); !status) return status.error();
+  if (const Status status = check_all(takes, dark_frames, lens, response); !status) return status.error();
+  const auto darkness = aligned(dark_frames, lens, response);
+  if (!darkness) return darkness.error();
+  const std::optional<MeanFrame>& dark = darkness->mean;
   std::vector<TurnedTake> turned;
   for (std::size_t i = 0; i < takes.size(); ++i) turned.push_back({takes[i].mean, turned_deg[i]});
   const auto fit = fit_turning(turned, dark ? &*dark : nullptr, lens, response);
   if (!fit) return Error{fit.error().kind, takes[0].name + ": " + fit.error().message};
-  FlatFit out = with_takes(takes, dark, lens);
+  FlatFit out = with_takes(takes, *darkness, lens);
   out.turned_deg = turned_deg;
   out.vignetting_terms = fit->terms;
   out.flat.vignetting = fit->vignetting;
@@ -274,6 +322,7 @@ nlohmann::ordered_json report_to_json(const FlatFit& fit) {
   out["gain_sigma"] = std::isfinite(fit.gain_sigma) ? ordered_json(fit.gain_sigma) : ordered_json();
   out["scene_tilt"] = fit.tilt;
   out["scene_scatter"] = fit.scene_scatter;
+  out["dark_level_error_codes"] = fit.from_dark ? ordered_json(fit.dark_level_error_codes) : ordered_json();
   out["temperature_c"] = or_null(fit.takes[0].mean.temperature_c);
   out["dark_temperature_c"] = or_null(fit.dark_temperature_c);
   for (Eigen::Index r = 0; r < 3; ++r)

@@ -28,6 +28,9 @@ struct FlatFit {
   FlatField flat;
   std::vector<FlatTake> takes;  // without their codes
   std::optional<double> dark_temperature_c;
+  // The dark frames' mean code in the field less the response's code of darkness, of each colour (grey: the first). Not
+  // part of the offsets: it is an error of the response's toe, or darkness that was not dark.
+  std::array<double, 3> dark_level_error_codes = {0, 0, 0};
   int vignetting_terms = 0;                              // of 3; the fewest that the frames support
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of flat.vignetting
   double offset_rms_codes = 0;                           // of the fixed pattern
@@ -49,9 +52,11 @@ struct FlatFit {
 // of its own. Lamps and dust are masked (fit_without_lamps_and_dust): where no other take and no dark frames tell a masked
 // pixel's offset, it is its column's. Offset and gain of each pixel: fit_pattern, from what remains of it; without dark frames and with one take
 // there is an offset only. With dark frames the offsets come from them (and are good beyond the field too), unless the
-// gains are supported too. Pixels that the border of the field cuts, or beyond, get an offset from dark frames only.
-// bad_input: sizes or bits that do not fit lens and response, fewer than 2 frames, clipped or dark pixels, dark frames that are not
-// dark or an even scene that is (take_level.h), over a twentieth of the field masked, a scene that is
+// gains are supported too; the dark frames' level is taken out (dark_level_error_codes), what is left is the pattern.
+// Pixels that the border of the field cuts, or beyond, get an offset from dark frames only. bad_input: dark frames with a
+// response that has no code for darkness (log with c = 0), sizes or bits that do not fit lens and response, fewer than 2
+// frames, clipped or dark pixels, dark frames that are not dark or an even scene that is (take_level.h), over a
+// twentieth of the field masked, a scene that is
 // not even (changes by more than a fifth from the centre to the edge).
 Result<FlatFit> fit_flat_field(const std::vector<FlatTake>& even, const std::optional<MeanFrame>& dark,
                                const Lens& lens, const Response& response);

@@ -28,9 +28,9 @@ double luminance(double r, double g, double b) {
   return 0.2126 * r + 0.7152 * g + 0.0722 * b;
 }
 
-}  // namespace
-
-double illuminance_lux(const LatLongImage& image, const Meter& meter) {
+// Σ over the pixels of a map: solid angle × the meter's weight × what `value` makes of the pixel
+template <class Value>
+double integral(const LatLongImage& image, const Meter& meter, Value value) {
   double sum = 0;
   for (int y = 0; y < image.height; ++y) {
     const double top = kPi * y / image.height, bottom = kPi * (y + 1) / image.height;
@@ -39,11 +39,24 @@ double illuminance_lux(const LatLongImage& image, const Meter& meter) {
       const Rgb& p = image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                                   static_cast<std::size_t>(x)];
       const Vec3d d = direction_from_lat_long((x + 0.5) / image.width, (y + 0.5) / image.height);
-      sum += sr * weight_of(meter, d) *
-             luminance(static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2]));
+      sum += sr * weight_of(meter, d) * value(p);
     }
   }
   return sum;
+}
+
+}  // namespace
+
+double illuminance_lux(const LatLongImage& image, const Meter& meter) {
+  return integral(image, meter, [](const Rgb& p) {
+    return luminance(static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2]));
+  });
+}
+
+double lit_part(const LatLongImage& image, const Meter& meter) {
+  const double whole = integral(image, meter, [](const Rgb&) { return 1.0; });
+  return whole > 0 ? integral(image, meter, [](const Rgb& p) { return p.maxCoeff() > 0 ? 1.0 : 0.0; }) / whole
+                   : 0;
 }
 
 Result<RecordedIlluminance> recorded_illuminance(const std::filesystem::path& recording,

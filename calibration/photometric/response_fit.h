@@ -87,8 +87,11 @@ inline constexpr double kStrongAicc = 10;
 double clip_code_of(const PatchSet& patches, const ResponseFitOptions& options);
 
 // Robust against one bad patch: where leaving one out makes the others agree, by more than chance allows, it is left out
-// and marked. Curves are compared by the corrected Akaike criterion (Hurvich and Tsai 1989) with the noise known: a
-// simpler curve wins unless another is better by 10.
+// and marked. Curves are compared by Akaike's criterion, −2 ln likelihood with the noise as stated + 2k, with the
+// correction for few samples of Hurvich and Tsai (1989). That one is derived for noise estimated from the residuals, and
+// is too much for noise that is known; it is kept because the stated noise is a guess too, and few patches should not
+// buy a curve with many parameters. The first of linear, log, linlog and pwl wins that no other is better than by 10, for
+// where patches do not tell log from linlog the least is a toss; the report names the runner-up.
 // What is not stated is assumed, on the safe side, and said: bits are the fewest that hold every code and clip_code the
 // largest code of these, because a clipped code taken for light is wrong without a sign, light taken for clipped is
 // counted, and frames of more bits are refused.

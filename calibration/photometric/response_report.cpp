@@ -56,6 +56,28 @@ ordered_json covariance_of(const ResponseFit& fit) {
   return rows;
 }
 
+bool is_chosen(const ResponseFit& fit, const CurveScore& s) {
+  if (s.curve != fit.curve) return false;
+  const auto* pwl = std::get_if<PiecewiseLinearResponse>(&fit.response.model);
+  return pwl == nullptr || pwl->points.size() == static_cast<std::size_t>(s.segments) + 1;
+}
+
+// The best of the curves that were not chosen, and how much more or less AICc it has.
+ordered_json runner_up_of(const ResponseFit& fit) {
+  const CurveScore *chosen = nullptr, *next = nullptr;
+  for (const CurveScore& s : fit.scores) {
+    if (!s.refused.empty()) continue;
+    if (is_chosen(fit, s))
+      chosen = &s;
+    else if (next == nullptr || s.aicc < next->aicc)
+      next = &s;
+  }
+  if (chosen == nullptr || next == nullptr) return nullptr;
+  ordered_json out = {{"model", name(next->curve)}, {"aicc_difference", next->aicc - chosen->aicc}};
+  if (next->segments > 0) out["segments"] = next->segments;
+  return out;
+}
+
 double rms_relative_error(const std::vector<PatchResidual>& residuals) {
   double sum = 0;
   int count = 0;
@@ -168,6 +190,7 @@ ordered_json report_to_json(const ResponseReport& report) {
   out["luminance_error"] = fit.luminance_error;
   out["selection"] = fit.curve_given ? "given" : "AICc";
   out["selection_rule"] = selection_rule(fit);
+  out["runner_up"] = runner_up_of(fit);
   out["models"] = ordered_json::array();
   for (const CurveScore& score : fit.scores) out["models"].push_back(json_of(score));
   out["fit"] = ordered_json::array();
@@ -200,8 +223,11 @@ std::string response_file(const ResponseReport& report) {
   out["assumed"] = std::move(out["fit"]["assumed"]);
   out["fit"].erase("assumed");
   const auto red = gain_named(report, 'r'), green = gain_named(report, 'g'), blue = gain_named(report, 'b');
-  if (red && green && blue)
+  if (red && green && blue) {
     add_colour_matrix(out, Eigen::Vector3d(1 / *red, 1 / *green, 1 / *blue).asDiagonal().toDenseMatrix());
+    // Grey comes out grey; what the filters do to colours is not known from grey patches.
+    if (out.contains("rec709_from_camera")) out["rec709_from_camera_is"] = "grey balance";
+  }
   return out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

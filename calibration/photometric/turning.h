@@ -33,7 +33,8 @@ struct TurningFit {
 // take. The unknown scene, a value for each cell of two degrees or a few pixels, is eliminated by subtracting its mean over the
 // takes (fixed effects); the vignetting's terms, up to three, are fitted to what is left, with Tukey's weights, for cells
 // with an edge in them agree badly. Covariance: each cell counts as one (sandwich).
-// black: the dark frames' mean, where there are some; its difference from the response's dark code is subtracted.
+// black: the dark frames' mean, where there are some; its difference from the response's dark code is subtracted, and should
+// be the pattern alone.
 // bad_input: fewer than two takes; the takes do not agree on a scene; the angles do not tell vignetting from it (to 5 %
 // at the edge).
 Result<TurningFit> fit_turning(const std::vector<TurnedTake>& takes, const MeanFrame* black, const Lens& lens,

@@ -19,13 +19,19 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// 1 + tilt and T, and what they are made of
-double relative_light(const VignettingFit& fit, const EvenSample& s) {
-  double value = 1 + fit.p[fit.levels + fit.terms + 2 * s.take] * s.x +
-                 fit.p[fit.levels + fit.terms + 2 * s.take + 1] * s.y;
-  double power = s.theta2;
+constexpr double kLeastLight = 0.03;  // of either factor: a first step may go too far
+
+// 1 + tilt · (x, y): of the scene
+double scene_light(const VignettingFit& fit, const EvenSample& s) {
+  const Eigen::Index at = fit.levels + fit.terms + 2 * s.take;
+  return std::max(1 + fit.p[at] * s.x + fit.p[at + 1] * s.y, kLeastLight);
+}
+
+// T(θ): what the lens leaves of it
+double lens_light(const VignettingFit& fit, const EvenSample& s) {
+  double value = 1, power = s.theta2;
   for (int k = 0; k < fit.terms; ++k, power *= s.theta2) value += fit.p[fit.levels + k] * power;
-  return std::max(value, 1e-3);
+  return std::max(value, kLeastLight);
 }
 
 void start(VignettingFit& fit, const std::vector<EvenSample>& samples, const Response& response) {
@@ -156,7 +162,7 @@ VignettingFit fit_terms(const std::vector<EvenSample>& samples, const Response& 
 }  // namespace
 
 double VignettingFit::luminance(const EvenSample& s) const {
-  return p[s.level] * relative_light(*this, s);
+  return p[s.level] * scene_light(*this, s) * lens_light(*this, s);
 }
 
 double VignettingFit::residual(const EvenSample& s, const Response& response) const {
@@ -164,14 +170,14 @@ double VignettingFit::residual(const EvenSample& s, const Response& response) co
 }
 
 void VignettingFit::gradient(const EvenSample& s, const Response& response, Eigen::VectorXd& row) const {
-  const double level = p[s.level], light = relative_light(*this, s);
-  const double slope = 1 / response.dluminance_dcode(response.code(level * light));
+  const double level = p[s.level], scene = scene_light(*this, s), lens = lens_light(*this, s);
+  const double slope = 1 / response.dluminance_dcode(response.code(level * scene * lens));
   row.setZero();
-  row[s.level] = slope * light;
+  row[s.level] = slope * scene * lens;
   double power = s.theta2;
-  for (int k = 0; k < terms; ++k, power *= s.theta2) row[levels + k] = slope * level * power;
-  row[levels + terms + 2 * s.take] = slope * level * s.x;
-  row[levels + terms + 2 * s.take + 1] = slope * level * s.y;
+  for (int k = 0; k < terms; ++k, power *= s.theta2) row[levels + k] = slope * level * scene * power;
+  row[levels + terms + 2 * s.take] = slope * level * lens * s.x;
+  row[levels + terms + 2 * s.take + 1] = slope * level * lens * s.y;
 }
 
 double VignettingFit::tilt() const {

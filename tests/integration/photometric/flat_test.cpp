@@ -306,6 +306,92 @@ TEST(FlatFit, TheClaimedErrorOfVignettingHoldsUnderColumnNoise) {
   EXPECT_LE(inside, 199);
 }
 
+TEST(FlatFit, ATiltedSceneIsMultipliedByTheVignetting) {
+  SyntheticSensor sensor(161, 120);
+  sensor.give_pattern(1, 1, 0);
+  const double tilt = 0.15;
+  const auto tilted = sensor.mean([&](const Vec3d& d) {
+    const Vec2d pixel = sensor.lens.project(d);
+    const double x = (pixel.x() - sensor.lens.center.x()) / sensor.lens.focal.x() / sensor.lens.max_theta_rad;
+    return 1500 * (1 + tilt * x);
+  });
+  const auto straight = sensor.even(1500);
+  for (const auto& [take, tilt_of_it] : {std::pair{straight, 0.0}, std::pair{tilted, tilt}}) {
+    const auto fit =
+        calibration::fit_flat_field({{"even", take}}, std::nullopt, sensor.lens, sensor.response);
+    ASSERT_TRUE(fit) << fit.error().message;
+    EXPECT_NEAR(fit->tilt, tilt_of_it, 1e-3);  // 1.4 codes of 3000, 161 columns
+    for (double theta = 0.1; theta < sensor.lens.max_theta_rad; theta += 0.1) {
+      const Eigen::Vector3d row(std::pow(theta, 2), std::pow(theta, 4), std::pow(theta, 6));
+      const double sigma = std::sqrt(row.dot(fit->covariance * row));
+      // One in 16000 lies beyond.
+      EXPECT_LT(std::abs(fit->flat.transmission(theta) - sensor.truth.transmission(theta)), 4 * sigma)
+          << theta;
+      EXPECT_LT(sigma, 1e-3) << theta;  // 1.4 codes of 3000 in some 10⁴ pixels, 161 columns
+    }
+    double square = 0, n = 0;
+    for (std::size_t i = 0; i < sensor.truth.offset_codes.size(); ++i) {
+      if (sensor.lens.theta_rad(Vec2d(static_cast<double>(i % 161), static_cast<double>(i / 161))) >
+          85 * kPi / 180)
+        continue;
+      square += std::pow(static_cast<double>(fit->flat.offset_codes[i] - sensor.truth.offset_codes[i]), 2);
+      ++n;
+    }
+    // As expect_offsets has it.
+    EXPECT_LT(square / n, 1.05 * std::pow(fit->offset_sigma_codes, 2) +
+                              10.8 * std::pow(fit->offset_shared_sigma_codes, 2));
+  }
+}
+
+TEST(FlatFit, AWrongToeOfTheResponseDoesNotBecomeAnOffsetOfEveryPixel) {
+  SyntheticSensor sensor(81, 60);
+  const Response truth{LogResponse{800, 208, 0.05}, 12, 180, 4095, 10000};
+  sensor.response = truth;
+  sensor.give_pattern(2, 1, 0);
+  const auto dark = sensor.even(0), even = sensor.even(500);
+  double mean = 0, inside = 0;  // of the true pattern in the field: of a level, not of the pattern
+  const auto in_field = [&](std::size_t i) {
+    return sensor.lens.theta_rad(Vec2d(static_cast<double>(i % 81), static_cast<double>(i / 81))) <
+           sensor.lens.max_theta_rad;
+  };
+  for (std::size_t i = 0; i < dark.code.size(); ++i)
+    if (in_field(i)) mean += static_cast<double>(sensor.truth.offset_codes[i]), ++inside;
+  mean /= inside;
+  Response wrong = truth;
+  wrong.model = LogResponse{800, 208, 0.02};  // at 500 cd/m² less than a fiftieth of a code
+  const double toe_error = 208 * std::log(0.05 / 0.02);
+  const auto expect_pattern = [&](const calibration::FlatFit& fit) {
+    // The middle half's mean against the mean: their difference is below a fifth of 2.2 codes' scatter, √(81 columns).
+    const double level = 2.2 / 9 * 3;
+    EXPECT_NEAR(fit.dark_level_error_codes[0], toe_error + mean, level);
+    const double taken = fit.dark_level_error_codes[0] - toe_error;
+    double worst = 0;
+    for (std::size_t i = 0; i < fit.flat.offset_codes.size(); ++i)
+      worst = std::max(worst, std::abs(static_cast<double>(fit.flat.offset_codes[i]) + taken -
+                                       static_cast<double>(sensor.truth.offset_codes[i])));
+    EXPECT_LT(worst, 1.0 / 8 * 5);  // a code of noise over √64, five times: 4860 pixels
+    const auto report = calibration::report_to_json(fit);
+    EXPECT_EQ(report.at("dark_level_error_codes")[0], fit.dark_level_error_codes[0]);
+  };
+  const auto fit = calibration::fit_flat_field({{"even", even}}, dark, sensor.lens, wrong);
+  ASSERT_TRUE(fit) << fit.error().message;
+  expect_pattern(*fit);
+  const std::vector<double> angles = {-50, 0, 50};
+  std::vector<calibration::FlatTake> turned;
+  for (const double angle : angles) turned.push_back({"turned " + std::to_string(angle), even});
+  const auto by_turning = calibration::fit_turned_flat_field(turned, angles, dark, sensor.lens, wrong);
+  ASSERT_TRUE(by_turning) << by_turning.error().message;
+  expect_pattern(*by_turning);
+
+  wrong.model = LogResponse{800, 208, 0};
+  for (const auto& refused : {calibration::fit_flat_field({{"even", even}}, dark, sensor.lens, wrong),
+                              calibration::fit_turned_flat_field(turned, angles, dark, sensor.lens, wrong)}) {
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::bad_input);
+    EXPECT_THAT(refused.error().message, testing::HasSubstr("parameters.c = 0"));
+  }
+}
+
 TEST(FlatFit, GainsComeFromSeveralLevelsOfALinearSensor) {
   SyntheticSensor sensor(81, 60);
   sensor.give_pattern(2, 1, 0.02);
@@ -547,6 +633,35 @@ TEST_F(CalibrateFlat, VerifyAgreesWithAMeterUnderTheSameSky) {
   const auto half = calibrate({"verify", "--lux", std::to_string(3.14159265358979 * kSky_cd_m2 / 2),
                                "--environment", sky_, "--json"});
   EXPECT_NEAR(nlohmann::json::parse(half.out).at("stops").get<double>(), 1, 0.01);
+}
+
+TEST_F(CalibrateFlat, VerifyFailsBeyondTheToleranceAndSaysHowFarTheMapGoes) {
+  const double lux = 3.14159265358979 * kSky_cd_m2;
+  const auto verify = [&](double meter_lux, const std::string& environment, const std::string& tolerance) {
+    return calibrate({"verify", "--lux", std::to_string(meter_lux), "--environment", environment,
+                      "--tolerance", tolerance, "--json"});
+  };
+  const auto good = verify(lux / 1.04, sky_, "5");  // and 0.5 % of the 16 rows
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  EXPECT_EQ(nlohmann::json::parse(good.out).at("tolerance"), 0.05);
+  for (const double factor : {1.07, 0.93}) {
+    const auto bad = verify(lux / factor, sky_, "5");
+    EXPECT_EQ(bad.exit_code, 3);
+    EXPECT_EQ(std::count(bad.err.begin(), bad.err.end(), '\n'), 1) << bad.err;
+    EXPECT_THAT(bad.err, testing::HasSubstr("allowed up to 5 %"));
+    EXPECT_NEAR(nlohmann::json::parse(bad.out).at("error").get<double>(), factor - 1, 6e-3);
+  }
+  for (const char* tolerance : {"0", "-1", "nan", "101"})
+    EXPECT_EQ(verify(lux, sky_, tolerance).exit_code, 2) << tolerance;
+  // A map of the half that a camera saw.
+  LatLongImage half{32, 16, std::vector<Rgb>(32 * 16, Rgb(0, 0, 0))};
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 16; ++x) half.pixels[static_cast<std::size_t>(32 * y + x)] = Rgb(500, 500, 500);
+  ASSERT_TRUE(write_environment(path("half_map.exr"), half));
+  const auto part = verify(lux / 2, path("half_map.exr"), "5");
+  ASSERT_EQ(part.exit_code, 0) << part.err;
+  EXPECT_NEAR(nlohmann::json::parse(part.out).at("measured_part").get<double>(), 0.5, 1e-9);
+  EXPECT_EQ(nlohmann::json::parse(good.out).at("measured_part"), 1);
 }
 
 TEST_F(CalibrateFlat, VerifyReadsTheOneLuxSourceThatFacesTheMeter) {

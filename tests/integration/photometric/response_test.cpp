@@ -150,6 +150,7 @@ TEST_F(CalibrateResponse, ColoursShareTheCurveAndMakeGreyGrey) {
   const auto run = calibrate(command("patches.csv"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto m = read_json("response.json").at("rec709_from_camera");
+  EXPECT_EQ(read_json("response.json").at("rec709_from_camera_is"), "grey balance");
   EXPECT_NEAR(m[0][0].get<double>(), 2, 1e-3);  // six digits of the codes
   EXPECT_NEAR(m[1][1].get<double>(), 1, 1e-3);
   EXPECT_NEAR(m[2][2].get<double>(), 1.25, 1e-3);
