@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
 // Lens calibration: ours, OpenCV's fisheye model and mrcal on the same corners.
+#include <malloc.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -11,8 +13,8 @@
 
 #include "bench/lens_peers.h"
 #include "bench/suite.h"
+#include "calibration/detection/picture_views.h"
 #include "calibration/lens/lens_calibration.h"
-#include "calibration/target/picture_views.h"
 #include "tests/support/babelcalib_corners.h"
 #include "tests/support/board_views.h"
 
@@ -161,6 +163,7 @@ Case judged(const std::string& name, const SolvedLens& solved, const Problem& pr
 
 // Highest resident memory while it runs, MB; NaN where the system does not tell.
 double peak_memory_mb(const std::function<void()>& run) {
+  malloc_trim(0);                                 // what earlier rows freed is not counted against this one
   std::ofstream("/proc/self/clear_refs") << "5";  // restarts the count
   run();
   std::ifstream status("/proc/self/status");

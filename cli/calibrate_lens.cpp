@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "calibration/detection/picture_views.h"
 #include "calibration/lens/lens_calibration.h"
 #include "calibration/lens/lens_report.h"
-#include "calibration/target/picture_views.h"
 #include "cli/gravity_option.h"
 #include "cli/progress.h"
 #include "interface/atomic_file.h"

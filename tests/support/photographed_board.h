@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "calibration/target/board.h"
+#include "calibration/detection/board.h"
 #include "lighting/lens.h"
 
 namespace lightwell::test {

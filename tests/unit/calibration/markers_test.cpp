@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/target/markers.h"
+#include "calibration/detection/markers.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-#include "calibration/target/board.h"
+#include "calibration/detection/board.h"
 #include "lighting/lens.h"
 #include "tests/support/photographed_board.h"
 

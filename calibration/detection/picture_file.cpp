@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/target/picture_file.h"
+#include "calibration/detection/picture_file.h"
 
 #include <png.h>
 #include <turbojpeg.h>

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "calibration/target/saddles.h"
+#include "calibration/detection/saddles.h"
 
 namespace lightwell::calibration {
 

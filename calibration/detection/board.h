@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "calibration/detection/picture_file.h"
 #include "calibration/lens/correspondences.h"
-#include "calibration/target/picture_file.h"
 
 namespace lightwell::calibration {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/target/board.h"
+#include "calibration/detection/board.h"
 
 namespace lightwell::calibration {
 

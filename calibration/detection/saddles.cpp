@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/target/saddles.h"
+#include "calibration/detection/saddles.h"
 
 #include <algorithm>
 #include <cmath>

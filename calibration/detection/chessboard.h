@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "calibration/target/board.h"
+#include "calibration/detection/board.h"
 
 namespace lightwell::calibration {
 

@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "calibration/target/board.h"
+#include "calibration/detection/board.h"
 
 namespace lightwell::calibration {
 

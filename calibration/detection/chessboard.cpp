@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/target/chessboard.h"
+#include "calibration/detection/chessboard.h"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "calibration/target/corner_grid.h"
+#include "calibration/detection/corner_grid.h"
 
 namespace lightwell::calibration {
 namespace {

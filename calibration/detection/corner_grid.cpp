@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/target/corner_grid.h"
+#include "calibration/detection/corner_grid.h"
 
 #include <algorithm>
 #include <array>

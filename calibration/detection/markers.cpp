@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/target/markers.h"
+#include "calibration/detection/markers.h"
 
 #include <algorithm>
 #include <cmath>

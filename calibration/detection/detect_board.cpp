@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "calibration/target/aprilgrid.h"
-#include "calibration/target/board.h"
-#include "calibration/target/chessboard.h"
-#include "calibration/target/markers.h"
+#include "calibration/detection/aprilgrid.h"
+#include "calibration/detection/board.h"
+#include "calibration/detection/chessboard.h"
+#include "calibration/detection/markers.h"
 
 namespace lightwell::calibration {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/target/april_tags.h"
+#include "calibration/detection/april_tags.h"
 
 #include <apriltag/apriltag.h>
 #include <apriltag/tag36h11.h>

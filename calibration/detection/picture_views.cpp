@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/target/picture_views.h"
+#include "calibration/detection/picture_views.h"
 
 #include <algorithm>
 #include <functional>

@@ -5,8 +5,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "calibration/target/board.h"
-#include "calibration/target/markers.h"
+#include "calibration/detection/board.h"
+#include "calibration/detection/markers.h"
 
 namespace lightwell::calibration {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/target/aprilgrid.h"
+#include "calibration/detection/aprilgrid.h"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "calibration/target/april_tags.h"
-#include "calibration/target/chessboard.h"
+#include "calibration/detection/april_tags.h"
+#include "calibration/detection/chessboard.h"
 
 namespace lightwell::calibration {
 namespace {
