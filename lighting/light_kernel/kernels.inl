@@ -176,22 +176,28 @@ void weigh_ring(const RingPlanes& in, bool mono, int sectors, float* power, doub
 // ---- Inverse of the cumulative sums. A search counts how many of eight or sixteen starts lie at or below the target, in
 // steps that wait for nothing but the one before, so several lights are on their way at once.
 
-LIGHTWELL_INLINE int count_of(const Longs4& true_lanes) {
+// How many lanes are at or below the limit.
+LIGHTWELL_INLINE int lanes_at_or_below(const Doubles4& v, const Doubles4& limit) {
+  const Longs4 below = v <= limit;  // a true lane is −1
+#if defined(__AVX2__)
+  return __builtin_popcount(static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(below))));
+#else
   using Longs2 = long long __attribute__((vector_size(16)));
-  const Longs2 sum = __builtin_shufflevector(true_lanes, true_lanes, 0, 1) +
-                     __builtin_shufflevector(true_lanes, true_lanes, 2, 3);
+  const Longs2 sum =
+      __builtin_shufflevector(below, below, 0, 1) + __builtin_shufflevector(below, below, 2, 3);
   return -static_cast<int>(sum[0] + sum[1]);
+#endif
 }
 
 LIGHTWELL_INLINE int at_or_below(const double* sorted, int quads, double target) {
   const Doubles4 limit = Doubles4{} + target;
-  Longs4 below = {};
+  int count = 0;
   for (int q = 0; q < quads; ++q) {
     Doubles4 v;
     load(v, sorted + 4 * q);
-    below += v <= limit;  // a true lane is −1
+    count += lanes_at_or_below(v, limit);
   }
-  return count_of(below);
+  return count;
 }
 
 // Always a ring with power.
@@ -248,7 +254,7 @@ template <bool kUniform>
 LIGHTWELL_INLINE int starts_at_or_below(const RingBlend& blend, const double* a, const double* b, int quads,
                                         double sectors, double apart, double target) {
   const Doubles4 limit = Doubles4{} + target;
-  Longs4 below = {};
+  int count = 0;
   for (int q = 0; q < quads; ++q) {
     Doubles4 start_a, start_b;
     load(start_a, a + 4 * q);
@@ -258,9 +264,9 @@ LIGHTWELL_INLINE int starts_at_or_below(const RingBlend& blend, const double* a,
       const double at = sectors + 4 * q * apart;
       start += blend.uniform * Doubles4{at, at + apart, at + 2 * apart, at + 3 * apart};
     }
-    below += start <= limit;
+    count += lanes_at_or_below(start, limit);
   }
-  return count_of(below);
+  return count;
 }
 
 LIGHTWELL_INLINE double bin_power(const RingTables& map, const RingBlend& blend, int sector) {
@@ -280,29 +286,47 @@ __attribute__((noinline)) SectorPlace last_sector_with_power(const RingTables& m
   return {from, 0.5};
 }
 
+// Each lane becomes the sum of itself and those before it. In Sklansky's order: a half's running sums, then the lower
+// half's whole added to each of the upper's. A sum so never falls below the one before it, whatever is rounded.
+LIGHTWELL_INLINE void make_running_sums(Doubles4& v) {
+  const Doubles4 zero = {};
+  v += __builtin_shufflevector(zero, v, 0, 4, 0, 6);
+  v += __builtin_shufflevector(zero, v, 0, 1, 5, 5);
+}
+
+// The blend's powers of four sectors.
+LIGHTWELL_INLINE void blended_powers(const RingBlend& blend, const float* a, const float* b,
+                                     Doubles4& power) {
+  Floats4 floats;
+  Doubles4 power_b;
+  load(floats, a);
+  to_doubles(floats, power);
+  load(floats, b);
+  to_doubles(floats, power_b);
+  power = blend.weight_a * power + blend.weight_b * power_b + blend.uniform;
+}
+
 // rest: the target less the block's start
 LIGHTWELL_INLINE SectorPlace find_in_block(const RingTables& map, int block, double rest,
                                            const RingBlend& blend) {
+  static_assert(kBlock == 8);
   const float* a = map.power + (blend.a * map.blocks + block) * kBlock;
   const float* b = map.power + (blend.b * map.blocks + block) * kBlock;
+  Doubles4 low, high;
+  blended_powers(blend, a, b, low);
+  blended_powers(blend, a + 4, b + 4, high);
   double power[kBlock];
-  for (int half = 0; half < kBlock; half += 4) {
-    Floats4 floats;
-    Doubles4 power_a, power_b;
-    load(floats, a + half);
-    to_doubles(floats, power_a);
-    load(floats, b + half);
-    to_doubles(floats, power_b);
-    store(power + half, blend.weight_a * power_a + blend.weight_b * power_b + blend.uniform);
-  }
-  // Running sums, one by one so that they never decrease, and how many of them the target has passed.
+  store(power, low);
+  store(power + 4, high);
+  make_running_sums(low);
+  make_running_sums(high);
+  high += low[3];
   double sum[kBlock + 1];
   sum[0] = 0;
-  int passed = 0;
-  for (int j = 0; j < kBlock; ++j) {
-    sum[j + 1] = sum[j] + power[j];
-    passed += sum[j + 1] <= rest ? 1 : 0;
-  }
+  store(sum + 1, low);
+  store(sum + 5, high);
+  const Doubles4 limit = Doubles4{} + rest;
+  const int passed = lanes_at_or_below(low, limit) + lanes_at_or_below(high, limit);
   const int sector = block * kBlock + passed;
   if (passed == kBlock || sector >= map.sectors)
     return last_sector_with_power(map, blend, least(sector, map.sectors) - 1);
