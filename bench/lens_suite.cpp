@@ -172,6 +172,11 @@ double peak_memory_mb(const std::function<void()>& run) {
   return std::nan("");
 }
 
+// For a row of the plot; the model in full is what the problem names.
+std::string short_name(const std::string& mrcal_model) {
+  return mrcal_model.find("SPLINED") != std::string::npos ? "splined" : "OpenCV 8";
+}
+
 std::vector<Row> rows_of(const Problem& problem, const Options& options) {
   const auto calibrate = [&] { return calibration::calibrate_lens(problem.views, problem.trust); };
   const auto ours = calibrate();
@@ -187,7 +192,7 @@ std::vector<Row> rows_of(const Problem& problem, const Options& options) {
                            [&, recompute] { (void)solve_opencv(problem.views, recompute); }));
   const MrcalStart start{ours->lens, solved.poses};
   const bool bend = problem.trust == TargetTrust::printed;
-  cases.push_back(judged("mrcal, " + problem.mrcal_model + ", from our result",
+  cases.push_back(judged("mrcal " + short_name(problem.mrcal_model) + ", from our result",
                          solve_mrcal(problem.views, start, problem.mrcal_model, bend), problem, ours->lens,
                          [&] { (void)solve_mrcal(problem.views, start, problem.mrcal_model, bend); }));
   return time_in_turns(problem.name, std::move(cases), options, "Lightwell", {1, 7});

@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -40,6 +43,17 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
+// A line's width in the plot's sans-serif face of 12 px, from above.
+int text_width(const std::string& text) {
+  return static_cast<int>(6.7 * static_cast<double>(text.size()));
+}
+
+std::string label_of(const Row& row) {
+  std::string label = number(row.timing.p50_ms) + " ms";
+  for (const auto& [key, value] : row.values) label += ", " + key + " " + number(value);
+  return label;
+}
+
 }  // namespace
 
 std::string to_json(const std::vector<std::pair<std::string, std::vector<Row>>>& results) {
@@ -67,8 +81,12 @@ std::string to_json(const std::vector<std::pair<std::string, std::vector<Row>>>&
 
 std::string to_svg(const std::string& suite, const std::vector<Row>& rows) {
   constexpr int kLine = 18;
-  constexpr int kLeft = 260;
-  constexpr int kBar = 420;
+  constexpr int kBar = 300;
+  int left = 60, right = 0;
+  for (const Row& row : rows) {
+    left = std::max(left, text_width(row.name) + 16);
+    right = std::max(right, text_width(label_of(row)) + 14);
+  }
   std::string body;
   int y = 34;
   std::string setting;
@@ -86,16 +104,15 @@ std::string to_svg(const std::string& suite, const std::vector<Row>& rows) {
       y += kLine;
     }
     const double width = longest > 0 ? kBar * row.timing.p50_ms / longest : 0;
-    std::string label = number(row.timing.p50_ms) + " ms";
-    for (const auto& [key, value] : row.values) label += ", " + key + " " + number(value);
-    body += "<text x='" + std::to_string(kLeft - 8) + "' y='" + std::to_string(y) + "' text-anchor='end'>" +
-            escaped(row.name) + "</text><rect x='" + std::to_string(kLeft) + "' y='" +
-            std::to_string(y - 11) + "' width='" + number(width) + "' height='13' fill='#4a7ab5'/><text x='" +
-            number(kLeft + width + 6) + "' y='" + std::to_string(y) + "' fill='#444'>" + escaped(label) +
-            "</text>\n";
+    body += "<text x='" + std::to_string(left - 8) + "' y='" + std::to_string(y) + "' text-anchor='end'>" +
+            escaped(row.name) + "</text><rect x='" + std::to_string(left) + "' y='" + std::to_string(y - 11) +
+            "' width='" + number(width) + "' height='13' fill='#4a7ab5'/><text x='" +
+            number(left + width + 6) + "' y='" + std::to_string(y) + "' fill='#444'>" +
+            escaped(label_of(row)) + "</text>\n";
     y += kLine;
   }
-  return "<svg xmlns='http://www.w3.org/2000/svg' width='1400' height='" + std::to_string(y + 10) +
+  return "<svg xmlns='http://www.w3.org/2000/svg' width='" + std::to_string(left + kBar + right) +
+         "' height='" + std::to_string(y + 10) +
          "' font-family='sans-serif' font-size='12'>\n<rect width='100%' height='100%' fill='white'/>\n" +
          "<text x='8' y='20' font-size='15'>lightwell bench: " + escaped(suite) + ", median, " +
          escaped(cpu_model()) + "</text>\n" + body + "</svg>\n";
@@ -104,10 +121,9 @@ std::string to_svg(const std::string& suite, const std::vector<Row>& rows) {
 std::string to_text(const std::string& suite, const std::vector<Row>& rows) {
   std::string out = suite + "\n";
   for (const Row& row : rows) {
-    char line[160];
-    std::snprintf(line, sizeof line, "  %-12s %-28s p50 %9.4f  p10 %9.4f  p99 %9.4f ms", row.setting.c_str(),
-                  row.name.c_str(), row.timing.p50_ms, row.timing.p10_ms, row.timing.p99_ms);
-    out += line;
+    out += fmt::format("  {:<12} {:<28} p50 {:9.4f}", row.setting, row.name, row.timing.p50_ms);
+    if (std::isfinite(row.timing.p10_ms)) out += fmt::format("  p10 {:9.4f}", row.timing.p10_ms);
+    out += fmt::format("  p99 {:9.4f} ms", row.timing.p99_ms);
     for (const auto& [key, value] : row.values) out += "  " + key + " " + number(value);
     out += "\n";
   }
