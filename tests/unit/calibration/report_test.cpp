@@ -146,7 +146,8 @@ std::size_t grid_lines(const Axis& x, const Axis& y) {
 }
 
 TEST(SvgPlot, HasAFewTicksWhateverItsLimits) {
-  constexpr double kInf = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInf = std::numeric_limits<double>::infinity(),
+                   kNan = std::numeric_limits<double>::quiet_NaN();
   const Axis plain{0, 1, false, ""};
   for (const auto& [low, high] : std::initializer_list<std::pair<double, double>>{{0, kInf},
                                                                                   {-kInf, kInf},
