@@ -3,6 +3,7 @@
 #include "calibration/photometric/patches.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -27,7 +28,7 @@ std::string shown(double value) {
 
 Result<Patch> patch_of(const CsvTable& table, std::size_t row) {
   Patch patch;
-  const auto luminance = table.number(row, "luminance_cd_m2", 0, 1e12, "a number from 0 to 1e12");
+  const auto luminance = table.luminance(row, "luminance_cd_m2");
   if (!luminance) return luminance.error();
   const auto code = table.number(row, "code", 0, 65535, "a number from 0 to 65535");
   if (!code) return code.error();
@@ -43,7 +44,14 @@ Result<Patch> patch_of(const CsvTable& table, std::size_t row) {
     if (!exposure) return exposure.error();
     patch.exposure_us = *exposure;
   }
-  patch.channel = table.text(row, "channel");
+  const std::string channel = table.text(row, "channel");
+  const bool monochrome = table.text(0, "channel").empty();
+  const auto named = monochrome && channel.empty() ? std::optional<std::string>("") : channel_named(channel);
+  if (!named || (monochrome && !named->empty()))
+    return Error{ErrorKind::bad_input,
+                 table.place(row) + ": channel = " + (channel.empty() ? "nothing" : channel.substr(0, 40)) +
+                     ": allowed " + (monochrome ? "nothing, as in the first line" : kChannelNames)};
+  patch.channel = *named;
   patch.name = table.text(row, "name");
   if (patch.name.empty()) patch.name = "line " + std::to_string(table.line(row));
   return patch;
@@ -126,6 +134,14 @@ std::vector<Patch> with_neighbours_joined(std::vector<Patch> patches) {
 }
 
 }  // namespace
+
+std::optional<std::string> channel_named(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const auto& [letter, word] : {std::pair("r", "red"), std::pair("g", "green"), std::pair("b", "blue")})
+    if (text == letter || text == word) return std::string(1, static_cast<char>(std::toupper(*letter)));
+  return std::nullopt;
+}
 
 Result<PatchSet> read_patches(const std::filesystem::path& file) {
   const auto table = CsvTable::read(file);

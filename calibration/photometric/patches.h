@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,7 @@ struct Patch {
   double luminance_cd_m2 = 0;
   double code = 0;
   double code_sigma = 0;       // standard deviation of code; 0: not known
-  std::string channel;         // empty: there is one only
+  std::string channel;         // R, G, B; empty: there is one only
   double exposure_us = 0;      // under which code was read; 0: not known
   double luminance_error = 0;  // relative standard deviation of luminance_cd_m2; 0: the same for all
 };
@@ -30,8 +31,12 @@ struct PatchSet {
   double still_at_code = 0;  // where pixels do not move though the others are noisy: the sensor clips there
 };
 
+inline constexpr const char* kChannelNames = "R, G, B, or red, green, blue";
+// "R", "G" or "B" of any of these names, in capitals or not; nothing for others.
+std::optional<std::string> channel_named(std::string text);
+
 // Columns luminance_cd_m2, code [, code_sigma] [, channel] [, use] [, name] [, exposure_us]; use: fit (the default) or
-// check.
+// check; channel: of kChannelNames.
 // bad_input: columns missing, values that are not numbers or out of range.
 Result<PatchSet> read_patches(const std::filesystem::path& file);
 

@@ -43,7 +43,7 @@ Result<std::vector<KnownPatch>> read_luminances(const std::filesystem::path& fil
   std::vector<KnownPatch> out;
   std::set<std::string> names;
   for (std::size_t row = 0; row < table->rows(); ++row) {
-    const auto luminance = table->number(row, "luminance_cd_m2", 0, 1e12, "a number from 0 to 1e12");
+    const auto luminance = table->luminance(row, "luminance_cd_m2");
     if (!luminance) return luminance.error();
     KnownPatch patch{table->text(row, "patch"), *luminance, false, {}};
     if (!names.insert(patch.name).second)

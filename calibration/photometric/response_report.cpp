@@ -111,17 +111,15 @@ ChannelGain gain_of(const ResponseFit& fit, const PatchSet& patches, const std::
 }
 
 std::string default_channel(const std::vector<std::string>& channels) {
-  for (const char* green : {"G", "g", "green", "Green"})
-    if (std::find(channels.begin(), channels.end(), green) != channels.end()) return green;
+  if (std::find(channels.begin(), channels.end(), "G") != channels.end()) return "G";
   return channels.empty() ? "" : channels.front();
 }
 
-// The gain of the channel whose name begins with this letter, where it was measured.
-std::optional<double> gain_named(const ResponseReport& report, char letter) {
-  const auto is = [letter](const std::string& name) { return !name.empty() && (name[0] | 32) == letter; };
-  if (is(report.channel)) return 1;
+// Where it was measured.
+std::optional<double> measured_gain(const ResponseReport& report, const char* channel) {
+  if (report.channel == channel) return 1;
   for (const ChannelGain& c : report.channels)
-    if (is(c.channel)) return c.gain;
+    if (c.channel == channel) return c.gain;
   return std::nullopt;
 }
 
@@ -145,7 +143,7 @@ Result<ResponseReport> calibrate_response(const PatchSet& patches, const std::st
   const std::vector<std::string> channels = channels_of(patches);
   ResponseReport report;
   report.source = patches.file;
-  report.channel = channel.empty() ? default_channel(channels) : channel;
+  report.channel = channel.empty() ? default_channel(channels) : channel_named(channel).value_or(channel);
   if (!channels.empty() && std::find(channels.begin(), channels.end(), report.channel) == channels.end())
     return Error{ErrorKind::usage, "--channel = " + channel + ": no patch of " + patches.file + " has it"};
   auto fit = fit_response(of_channel(patches, report.channel), options);
@@ -222,7 +220,8 @@ std::string response_file(const ResponseReport& report) {
       report_to_json(report).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   out["assumed"] = std::move(out["fit"]["assumed"]);
   out["fit"].erase("assumed");
-  const auto red = gain_named(report, 'r'), green = gain_named(report, 'g'), blue = gain_named(report, 'b');
+  const auto red = measured_gain(report, "R"), green = measured_gain(report, "G"),
+             blue = measured_gain(report, "B");
   if (red && green && blue) {
     add_colour_matrix(out, Eigen::Vector3d(1 / *red, 1 / *green, 1 / *blue).asDiagonal().toDenseMatrix());
     // Grey comes out grey; what the filters do to colours is not known from grey patches.

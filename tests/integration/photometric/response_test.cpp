@@ -119,6 +119,16 @@ TEST_F(CalibrateResponse, ExposuresInTheFileSpreadFewCardsOverMoreDecades) {
   EXPECT_EQ(run.err.find("reference_exposure_us"), std::string::npos);
 }
 
+TEST_F(CalibrateResponse, ASpreadsheetsFileIsRead) {
+  std::string text = "\xef\xbb\xbf" + good_csv();
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.insert(at, "\r");
+  text.replace(text.find("grey 25,"), 8, "\"grey 25, by the \"\"window\"\"\",");
+  write("patches.csv", text);
+  const auto run = calibrate(command("patches.csv"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(nlohmann::json::parse(run.out).at("fit").at(2).at("patch"), "grey 25, by the \"window\"");
+}
+
 TEST_F(CalibrateResponse, ADarkCheckPatchHasAnIntervalInLightAndNoRatio) {
   write("patches.csv", good_csv() + "dark,0," + std::to_string(kTruth.code(0)) + ",0.5,check\n");
   const auto run = calibrate(command("patches.csv"));
@@ -143,7 +153,7 @@ TEST_F(CalibrateResponse, NamesTheBadPatchAndGoesOnWithoutIt) {
 
 TEST_F(CalibrateResponse, ColoursShareTheCurveAndMakeGreyGrey) {
   std::string text = "luminance_cd_m2,code,channel\n";
-  for (const auto& [channel, gain] : {std::pair{"R", 0.5}, {"G", 1.0}, {"B", 0.8}})
+  for (const auto& [channel, gain] : {std::pair{"Red", 0.5}, {"G", 1.0}, {"b", 0.8}})
     for (const double l : {0.1, 1.6, 25.0, 400.0, 6300.0, 1e5})
       text += std::to_string(l) + "," + std::to_string(kTruth.code(gain * l)) + "," + channel + "\n";
   write("patches.csv", text);
@@ -175,6 +185,14 @@ TEST_F(CalibrateResponse, BadInputIsRefusedInOneLineAndNothingIsChanged) {
       {"luminance_cd_m2,code\n1,0\n10,200\n100,300\n1000,1000\n", "line 2: code = 0 is clipped"},
       {"luminance_cd_m2,code\n1,100\n10,200,7\n", "line 3: 3 fields: allowed 2"},
       {"luminance_cd_m2,code,use\n1,100,never\n", "line 2: use = never"},
+      {"luminance_cd_m2,code\n1e-320,100\n10,200\n100,300\n1000,400\n",
+       "line 2: luminance_cd_m2 = 1e-320: allowed 0, or a number from 1e-9 to 1e12"},
+      {"luminance_cd_m2;code\n1;100\n", "columns are separated by semicolons: allowed commas"},
+      {"luminance_cd_m2,code,code\n1,100,100\n", "column code stands there twice"},
+      {"luminance_cd_m2,code,channel\n1,100,G\n10,200,X\n",
+       "line 3: channel = X: allowed R, G, B, or red, green, blue"},
+      {"luminance_cd_m2,code,channel\n1,100,G\n10,200,\n", "line 3: channel = nothing: allowed R, G, B"},
+      {"luminance_cd_m2,code,channel\n1,100,\n10,200,R\n", "line 3: channel = R: allowed nothing"},
   };
   for (const auto& c : cases) {
     write("patches.csv", c.csv);
