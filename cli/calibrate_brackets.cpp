@@ -10,6 +10,7 @@
 #include "cli/progress.h"
 #include "interface/atomic_file.h"
 #include "interface/exr_file.h"
+#include "interface/option_range.h"
 #include "interface/same_file.h"
 
 namespace lightwell::cli {
@@ -110,7 +111,10 @@ Command add_calibrate_brackets(CLI::App& group) {
   command->footer("Example: lightwell calibrate brackets IMG_*.JPG --out response.json --radiance room.exr");
   command->add_option("IMAGES", options->images, "JPEG photographs of one still scene, 3 or more")
       ->required();
-  command->add_option("--out", options->out, "response.json to write")->required()->type_name("FILE");
+  command->add_option("--out", options->out, "response.json to write")
+      ->required()
+      ->check(output_file())
+      ->type_name("FILE");
   command->add_option("--exposures", options->exposures, "Seconds, one a photograph; default: from EXIF")
       ->delimiter(',')
       ->type_name("S,S,...");
@@ -119,6 +123,7 @@ Command add_calibrate_brackets(CLI::App& group) {
                    "debevec (default, smooths) or robertson (does not; give it uneven steps)")
       ->type_name("NAME");
   command->add_option("--radiance", options->radiance, "The merged radiance, a quarter of the size")
+      ->check(output_file())
       ->type_name("FILE.exr");
   command->add_flag("--json", options->json, "The report as JSON on stdout");
   return {command, [options] { return run(*options); }};

@@ -7,6 +7,7 @@
 #include "calibration/photometric/grey_chart.h"
 #include "cli/command.h"
 #include "interface/atomic_file.h"
+#include "interface/option_range.h"
 
 namespace lightwell::cli {
 namespace {
@@ -41,6 +42,7 @@ Command add_calibrate_chart(CLI::App& group) {
       ->type_name("MM");
   command->add_option("--out", options->out, "SVG to write, to be printed at its own size")
       ->required()
+      ->check(output_file())
       ->type_name("FILE.svg");
   return {command, [options] { return run(*options); }};
 }

@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "interface/atomic_file.h"
 #include "interface/calibration_io.h"
+#include "interface/option_range.h"
 #include "interface/printable.h"
 #include "interface/response_json.h"
 #include "interface/same_file.h"
@@ -72,6 +73,7 @@ Command add_calibrate_colour(CLI::App& group) {
       ->type_name("FILE");
   command->add_option("--out", options->out, "response.json to write, with rec709_from_camera")
       ->required()
+      ->check(output_file())
       ->type_name("FILE");
   command->add_flag("--json", options->json, "The report as JSON on stdout");
   return {command, [options] { return run(*options); }};

@@ -12,6 +12,7 @@
 #include "cli/progress.h"
 #include "interface/atomic_file.h"
 #include "interface/calibration_io.h"
+#include "interface/option_range.h"
 #include "interface/same_file.h"
 
 namespace lightwell::cli {
@@ -155,7 +156,10 @@ Command add_calibrate_flat(CLI::App& group) {
           "these angles about the image's vertical: vignetting without an even scene")
       ->delimiter(',')
       ->type_name("DEG,DEG,...");
-  command->add_option("--out", options->out, "flat.json to write")->required()->type_name("FILE");
+  command->add_option("--out", options->out, "flat.json to write")
+      ->required()
+      ->check(output_file())
+      ->type_name("FILE");
   command->add_flag("--json", options->json, "The report as JSON on stdout");
   return {command, [options] { return run(*options); }};
 }

@@ -108,7 +108,9 @@ Command add_calibrate_import(CLI::App& calibrate) {
   command->add_option(
       "--gravity", o->gravity,
       std::string(kGravityHelp) + ". Of the file's camera: where the import turns it, so is this");
-  command->add_option("--out", o->out, "The lens, with the conversion's error, JSON")->required();
+  command->add_option("--out", o->out, "The lens, with the conversion's error, JSON")
+      ->required()
+      ->check(output_file());
   command->add_flag("--json", o->json, "The same on stdout");
   return {command, [o] { return run(*o); }};
 }

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@ namespace {
 struct LensOptions {
   std::vector<std::string> pictures;
   std::string board;
-  double marker_mm = 0;  // 0: the board's usual one
+  std::optional<double> marker_mm;  // none: the board's usual one
   std::string corners;
   std::string corners_out;
   std::string target;        // exact, printed; empty: printed in pictures, exact in CORNERS.json
@@ -75,11 +76,13 @@ struct Input {
 
 Result<calibration::Board> board_of(const LensOptions& options) {
   auto board = calibration::board_from_text(options.board);
-  if (!board || options.marker_mm == 0) return board;
-  if (!(options.marker_mm > 0 && options.marker_mm < board->pitch_mm))
-    return usage("--marker is " + std::to_string(options.marker_mm) +
+  if (!board || !options.marker_mm) return board;
+  if (board->kind == calibration::BoardKind::chessboard)
+    return usage("--marker goes with a charuco or aprilgrid board, --board is " + options.board);
+  if (!(*options.marker_mm > 0 && *options.marker_mm < board->pitch_mm))
+    return usage("--marker is " + std::to_string(*options.marker_mm) +
                  ", allowed above 0, below the pitch of " + std::to_string(board->pitch_mm) + " mm");
-  board->marker_mm = options.marker_mm;
+  board->marker_mm = *options.marker_mm;
   return board;
 }
 
@@ -90,6 +93,7 @@ Result<Input> read_input(const LensOptions& options) {
                           : "pictures with --board, or --corners, are required");
   if (!pictures) {
     if (!options.board.empty()) return usage("--board goes with pictures, not with --corners");
+    if (options.marker_mm) return usage("--marker goes with pictures, not with --corners");
     auto views = calibration::read_target_views(options.corners);
     if (!views) return views.error();
     return Input{{*std::move(views), {}}, options.corners + ": "};
@@ -192,14 +196,17 @@ Command add_calibrate_lens(CLI::App& calibrate) {
           "exact: the points are where they are said to be; printed: the board's stretch, shear and bow are "
           "found too; else printed with pictures, exact with --corners")
       ->check(CLI::IsMember({"exact", "printed"}));
-  command->add_option("--corners-out", o->corners_out, "What was found in the pictures, as for --corners");
+  command->add_option("--corners-out", o->corners_out, "What was found in the pictures, as for --corners")
+      ->check(output_file());
   command
       ->add_option("--max-theta", o->max_theta_deg,
                    "Where the field ends, degrees off axis; else at the farthest point of the board. Beyond "
                    "that point the lens is extrapolated, and the file says so")
       ->check(numbers_above_0_to(180, "above 0, at most 180 degrees"));
   command->add_option("--gravity", o->gravity, kGravityHelp);
-  command->add_option("--out", o->out, "The lens, with its uncertainty, JSON")->required();
+  command->add_option("--out", o->out, "The lens, with its uncertainty, JSON")
+      ->required()
+      ->check(output_file());
   command->add_flag("--json", o->json, "The same on stdout");
   return {command, [o] { return run(*o); }};
 }

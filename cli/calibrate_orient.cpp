@@ -9,6 +9,7 @@
 #include "interface/atomic_file.h"
 #include "interface/calibration_io.h"
 #include "interface/lens_json.h"
+#include "interface/option_range.h"
 
 namespace lightwell::cli {
 namespace {
@@ -53,7 +54,9 @@ Command add_calibrate_orient(CLI::App& calibrate) {
   command->footer("Example: lightwell calibrate orient lens.json --gravity 0.12,-0.31,9.79 --out lens.json");
   command->add_option("lens", o->lens, "lens.json of the camera")->required();
   command->add_option("--gravity", o->gravity, kGravityHelp)->required();
-  command->add_option("--out", o->out, "The lens with its zenith, JSON; may be the same file")->required();
+  command->add_option("--out", o->out, "The lens with its zenith, JSON; may be the same file")
+      ->required()
+      ->check(output_file());
   command->add_flag("--json", o->json, "Zenith and tilt on stdout");
   return {command, [o] { return run(*o); }};
 }

@@ -7,6 +7,7 @@
 #include "calibration/report/html_report.h"
 #include "cli/command.h"
 #include "interface/atomic_file.h"
+#include "interface/option_range.h"
 #include "interface/same_file.h"
 
 namespace lightwell::cli {
@@ -23,6 +24,7 @@ Command add_calibrate_report(CLI::App& group) {
       ->required();
   command->add_option("--out", options->out, "The page, with everything in it")
       ->required()
+      ->check(output_file())
       ->type_name("FILE.html");
   return {command, [options] {
             const std::filesystem::path directory = options->directory;

@@ -9,6 +9,7 @@
 #include "cli/command.h"
 #include "interface/atomic_file.h"
 #include "interface/calibration_io.h"
+#include "interface/option_range.h"
 #include "interface/same_file.h"
 
 namespace lightwell::cli {
@@ -16,8 +17,8 @@ namespace {
 
 struct Options {
   std::string patches, out, model = "auto", channel, recording, positions, chart, lens;
-  double luminance_error_percent = 1, code_sigma = 0.5, clip_code = 0;
-  std::optional<double> exposure_us;
+  double luminance_error_percent = 1, clip_code = 0;
+  std::optional<double> code_sigma, exposure_us;
   int bits = 0;
   bool json = false;
 };
@@ -39,14 +40,14 @@ Result<calibration::ResponseFitOptions> fit_options(const Options& o) {
   const int largest = (1 << (o.bits >= 8 && o.bits <= 16 ? o.bits : 16)) - 1;
   for (const Status& status :
        {in_range("--luminance-error", o.luminance_error_percent, 0.01, 50, "0.01 to 50 percent"),
-        in_range("--code-sigma", o.code_sigma, 1e-3, 1e4, "0.001 to 10000 codes"),
+        in_range("--code-sigma", o.code_sigma.value_or(1), 1e-3, 1e4, "0.001 to 10000 codes"),
         in_range("--bits", o.bits, o.bits == 0 ? 0 : 8, 16, "8 to 16, or 0 to guess"),
         in_range("--clip-code", o.clip_code, o.clip_code == 0 ? 0 : 1, largest,
                  ("1 to " + std::to_string(largest) + ", or 0 for the largest code").c_str()),
         in_range("--exposure-us", o.exposure_us.value_or(1), 1e-3, 1e9, "0.001 to 1e9")})
     if (!status) return status.error();
   out.luminance_error = o.luminance_error_percent / 100;
-  out.code_sigma = o.code_sigma;
+  if (o.code_sigma) out.code_sigma = *o.code_sigma;
   out.bits = o.bits;
   out.clip_code = o.clip_code;
   out.reference_exposure_us = o.exposure_us.value_or(0);
@@ -59,6 +60,8 @@ Status check_sources(const Options& o) {
   if (o.recording.empty() && !(o.positions.empty() && o.chart.empty()))
     return usage(std::string(o.chart.empty() ? "--positions" : "--chart") + " needs --recording");
   if (o.chart.empty() && !o.lens.empty()) return usage("--lens needs --chart");
+  if (!o.recording.empty() && o.code_sigma)
+    return usage("--code-sigma goes without --recording, whose frames tell it");
   return check_output_is_no_input(o.out, {o.patches, o.recording, o.positions, o.lens});
 }
 
@@ -98,13 +101,13 @@ Result<calibration::ResponseReport> make_report(const Options& o) {
 int run(const Options& o) {
   const auto report = make_report(o);
   if (!report) return fail(report.error());
+  if (const Status status = write_file_atomically(o.out, calibration::response_file(*report)); !status)
+    return fail(status.error());
   if (report->recorded)
     for (const std::string& line : report->recorded->left_out)
       std::fprintf(stderr, "lightwell: %s, left out\n", line.c_str());
   for (const std::string& line : calibration::assumption_lines(*report))
     std::fprintf(stderr, "lightwell: %s\n", line.c_str());
-  if (const Status status = write_file_atomically(o.out, calibration::response_file(*report)); !status)
-    return fail(status.error());
   if (o.json)
     std::printf("%s\n", calibration::report_to_json(*report)
                             .dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
@@ -130,7 +133,10 @@ Command add_calibrate_response(CLI::App& group) {
                    "[, exposure_us]; with --recording: luminance_cd_m2, patch [, use]")
       ->required()
       ->type_name("PATCHES.csv");
-  command->add_option("--out", options->out, "response.json to write")->required()->type_name("FILE");
+  command->add_option("--out", options->out, "response.json to write")
+      ->required()
+      ->check(output_file())
+      ->type_name("FILE");
   command
       ->add_option(
           "--recording", options->recording,

@@ -34,12 +34,13 @@ Result<Calibration> calibration_for(const Options& o) {
   return calibration_from_json(text, o.recording + " (attached calibration.json)");
 }
 
-Result<calibration::RecordedIlluminance> measure(const Options& o, const calibration::Meter& meter) {
+// remark: what reading the map has to say.
+Result<calibration::RecordedIlluminance> measure(const Options& o, const calibration::Meter& meter,
+                                                 std::string& remark) {
   if (!o.environment.empty()) {
     const auto environment = read_environment(o.environment);
     if (!environment) return environment.error();
-    if (const std::string remark = environment->remark(o.environment); !remark.empty())
-      std::fprintf(stderr, "lightwell: %s\n", remark.c_str());
+    remark = environment->remark(o.environment);
     calibration::RecordedIlluminance out;
     out.lux = calibration::illuminance_lux(environment->image, meter);
     out.measured_part = calibration::lit_part(environment->image, meter);
@@ -81,6 +82,8 @@ Status check_usage(const Options& o) {
   if (!(o.lux > 0 && o.lux <= 1e9)) return usage("--lux: allowed above 0, at most 1e9");
   if (o.environment.empty() == o.recording.empty())
     return usage("one of --environment and --recording is needed");
+  if (!o.environment.empty() && !o.calibration.empty())
+    return usage("--calibration goes with --recording: a map is calibrated");
   return {};
 }
 
@@ -92,18 +95,22 @@ int run(const Options& o) {
     return fail(usage("--toward: allowed three numbers that are not all 0"));
   meter.toward.normalize();
   meter.cosine = !o.no_cosine;
-  const auto measured = measure(o, meter);
+  std::string remark;
+  const auto measured = measure(o, meter, remark);
   if (!measured) return fail(measured.error());
-  const std::string& source = o.environment.empty() ? o.recording : o.environment;
+  const std::string source = (o.environment.empty() ? o.recording : o.environment) + ": ";
+  // A refusal is one line: what reading the map has to say stands in it.
+  const std::string aside = remark.empty() ? "" : "; " + remark.substr(source.size());
   if (!(measured->lux > 0))
-    return fail({ErrorKind::bad_input,
-                 source + ": no light at all reaches the meter: allowed a map that is not black there"});
+    return fail(
+        {ErrorKind::bad_input,
+         source + "no light at all reaches the meter: allowed a map that is not black there" + aside});
   if (!(measured->lux > measured->darkness_lux)) {
     char error[200];
     std::snprintf(error, sizeof error,
-                  ": %.3g lux in the take, which is dark: allowed above %.3g, one code of light all over",
+                  "%.3g lux in the take, which is dark: allowed above %.3g, one code of light all over",
                   measured->lux, measured->darkness_lux);
-    return fail({ErrorKind::bad_input, o.recording + error});
+    return fail({ErrorKind::bad_input, source + error});
   }
   const double ratio = measured->lux / o.lux;
   if (o.json)
@@ -114,8 +121,9 @@ int run(const Options& o) {
     char error[64];
     std::snprintf(error, sizeof error, "error %+.2f %%: allowed up to %g %%", 100 * (ratio - 1),
                   o.tolerance_percent);
-    return fail({ErrorKind::bad_input, source + ": " + error});
+    return fail({ErrorKind::bad_input, source + error + aside});
   }
+  if (!remark.empty()) std::fprintf(stderr, "lightwell: %s\n", remark.c_str());
   return 0;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdio>
 #include <exception>
+#include <new>
 
 #include "cli/command.h"
 
@@ -43,8 +43,9 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return lightwell::cli::fail({lightwell::ErrorKind::failed, "not enough memory"});
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "lightwell: %s\n", error.what());
-    return static_cast<int>(lightwell::ErrorKind::failed);
+    return lightwell::cli::fail({lightwell::ErrorKind::failed, error.what()});
   }
 }

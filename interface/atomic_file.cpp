@@ -31,6 +31,7 @@ bool write_all(int fd, std::string_view content) {
 }  // namespace
 
 Status check_output_name(const std::filesystem::path& file) {
+  if (file.empty()) return Error{ErrorKind::usage, "output '': allowed the name of a file"};
   if (file != "-") return {};
   return Error{ErrorKind::usage,
                "output '-': standard output is /dev/stdout, and a file of this name is ./-"};

@@ -23,10 +23,6 @@ Error bad(const std::string& name, const std::string& what) {
   return {ErrorKind::bad_input, name + ": " + what};
 }
 
-std::string first_line(const std::string& text) {
-  return text.substr(0, text.find('\n'));
-}
-
 EnvironmentImage repair(LatLongImage image) {
   EnvironmentImage result;
   for (Rgb& pixel : image.pixels)
@@ -72,8 +68,8 @@ Result<EnvironmentImage> environment_from_bytes(std::string_view bytes, const st
     return environment;
   } catch (const std::bad_alloc&) {
     return Error{ErrorKind::failed, name + ": not enough memory for the image"};
-  } catch (const std::exception& error) {
-    return bad(name, std::string("damaged image: ") + first_line(error.what()));
+  } catch (const std::exception&) {
+    return bad(name, "damaged image");
   }
 }
 

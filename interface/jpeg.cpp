@@ -41,7 +41,7 @@ Result<JpegPicture> decode_jpeg(std::string_view bytes, const std::string& name,
   const std::unique_ptr<void, Destroy> decoder(tjInitDecompress());
   if (!decoder) return Error{ErrorKind::failed, std::string("cannot read JPEG: ") + tjGetErrorStr2(nullptr)};
   const auto bad = [&] {
-    return Error{ErrorKind::bad_input, name + ": is no whole JPEG picture: " + tjGetErrorStr2(decoder.get())};
+    return Error{ErrorKind::bad_input, name + ": is no whole JPEG picture: cut, damaged, or of another kind"};
   };
   const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
   int width = 0, height = 0, subsampling = 0, colours = 0;

@@ -18,6 +18,24 @@ std::string shown(const nlohmann::json& value) {
   return text;
 }
 
+// Of a byte, counted from 1.
+std::size_t line_of(std::string_view text, std::size_t byte) {
+  const std::string_view before = text.substr(0, byte > 0 ? byte - 1 : 0);
+  return 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
+}
+
+// What stands from a byte, counted from 1, to the end of its line, short and printable.
+std::string shown_at(std::string_view text, std::size_t byte) {
+  constexpr std::size_t kLongest = 20;
+  std::string_view rest = text.substr(byte > 0 ? byte - 1 : 0);
+  rest = rest.substr(0, std::min({rest.find_first_of("\r\n"), rest.size(), kLongest}));
+  if (rest.empty()) return "the line's end";
+  std::string out(rest);
+  std::replace_if(
+      out.begin(), out.end(), [](unsigned char c) { return c < ' ' || c > '~'; }, '?');
+  return "'" + out + "'";
+}
+
 }  // namespace
 
 JsonFields::JsonFields(const nlohmann::json& object, std::string file, std::string path)
@@ -148,16 +166,18 @@ std::vector<std::vector<double>> JsonFields::lists(std::string_view key) const {
 }
 
 Result<nlohmann::json> parse_json(const std::string& text, const std::string& file) {
+  const auto bad = [&](const std::string& what) { return Error{ErrorKind::bad_input, file + ": " + what}; };
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) return bad("is empty, expected JSON");
   try {
     return nlohmann::json::parse(text);
-  } catch (const nlohmann::json::exception& e) {
-    // The library's message holds a number for itself, then the place and what was expected; one line of it
-    // suffices.
-    std::string why = e.what();
-    if (const auto bracket = why.find("] "); bracket != std::string::npos) why.erase(0, bracket + 2);
-    std::replace_if(
-        why.begin(), why.end(), [](unsigned char c) { return c < ' ' || c > '~'; }, '?');
-    return Error{ErrorKind::bad_input, file + ": is not JSON: " + why.substr(0, 200)};
+  } catch (const nlohmann::json::parse_error& e) {
+    // The library's own words are about its parser; the place is what helps.
+    if (e.byte > text.size())
+      return bad("line " + std::to_string(line_of(text, text.size())) + ": is not JSON: ends too early");
+    return bad("line " + std::to_string(line_of(text, e.byte)) + ": is not JSON from " +
+               shown_at(text, e.byte) + " on");
+  } catch (const nlohmann::json::out_of_range&) {
+    return bad("holds a number beyond 1.8e308: allowed finite numbers");
   }
 }
 

@@ -27,6 +27,7 @@ class JsonFields {
   // path: of this object inside the file, "" for its root
   JsonFields(const nlohmann::json& object, std::string file, std::string path = "");
 
+  [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] bool has(std::string_view key) const;
   // What stands there, for files of other programs that write one thing in several ways; false where it is missing.
   [[nodiscard]] bool is_number(std::string_view key) const;

@@ -60,4 +60,15 @@ inline CLI::Validator numbers_above_0_to(double high, const std::string& allowed
           ""};
 }
 
+// The name of a file to write: '' names none, and - is no name for standard output here.
+inline CLI::Validator output_file() {
+  return {[](std::string& text) {
+            if (text.empty()) return std::string("value '', allowed the name of a file");
+            return text == "-"
+                       ? std::string("value '-', allowed /dev/stdout for standard output, ./- for a file")
+                       : std::string();
+          },
+          ""};
+}
+
 }  // namespace lightwell

@@ -35,7 +35,7 @@ Status MatroskaReader::open_decoder() {
   decoder_->thread_count = 2;
   int code = avcodec_parameters_to_context(decoder_.get(), parameters);
   if (code >= 0) code = avcodec_open2(decoder_.get(), codec, nullptr);
-  if (code < 0) return bad("the FFV1 header is damaged: " + av_error_text(code));
+  if (code < 0) return bad("the FFV1 header is damaged");
   return {};
 }
 

@@ -53,7 +53,7 @@ Result<MatroskaReader::Open> MatroskaReader::open_container() const {
   const bool ends_early = code == AVERROR(EIO) || code == AVERROR_EOF;
   if (code < 0 && ends_early && open.file->error() == 0 && (!end->has_proper_end || end->missing_bytes > 0))
     return bad("cut within its header, before any frame");
-  if (code < 0) return bad("cannot be read as Matroska: " + av_error_text(code));
+  if (code < 0) return bad("is damaged: it cannot be read as Matroska");
   open.container = Container(context, [](AVFormatContext* closing) { avformat_close_input(&closing); });
   context->max_index_size = 1u << 30;  // the index counts the frames; a long take's must not be thinned
   open.video = find_video(*context);

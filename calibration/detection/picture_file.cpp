@@ -34,12 +34,12 @@ Result<GreyPicture> read_jpeg(const std::filesystem::path& file, const std::stri
   const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
   int width = 0, height = 0, subsampling = 0, space = 0;
   if (tjDecompressHeader3(decoder.get(), data, bytes.size(), &width, &height, &subsampling, &space) != 0)
-    return bad(file, std::string("is no JPEG picture: ") + tjGetErrorStr2(decoder.get()));
+    return bad(file, "is no JPEG picture: its header is damaged");
   auto picture = sized(file, static_cast<std::size_t>(width), static_cast<std::size_t>(height));
   if (!picture) return picture;
   if (tjDecompress2(decoder.get(), data, bytes.size(), picture->pixels.data(), width, 0, height, TJPF_GRAY,
                     TJFLAG_STOPONWARNING | TJFLAG_ACCURATEDCT) != 0)
-    return bad(file, std::string("is a damaged JPEG picture: ") + tjGetErrorStr2(decoder.get()));
+    return bad(file, "is a damaged JPEG picture: cut, or changed in the middle");
   return picture;
 }
 
@@ -47,12 +47,12 @@ Result<GreyPicture> read_png(const std::filesystem::path& file, const std::strin
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   const auto failure = [&](const std::string& what) {
-    const Error error = bad(file, what + image.message);
+    const Error error = bad(file, what);
     png_image_free(&image);
     return error;
   };
   if (!png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()))
-    return failure("is no PNG picture: ");
+    return failure("is no PNG picture: its header is damaged");
   auto picture = sized(file, image.width, image.height);
   if (!picture) {
     png_image_free(&image);
@@ -61,7 +61,7 @@ Result<GreyPicture> read_png(const std::filesystem::path& file, const std::strin
   image.format = PNG_FORMAT_GRAY;
   const png_color black{0, 0, 0};
   if (!png_image_finish_read(&image, &black, picture->pixels.data(), 0, nullptr))
-    return failure("is a damaged PNG picture: ");
+    return failure("is a damaged PNG picture: cut, or changed in the middle");
   return picture;
 }
 

@@ -134,7 +134,7 @@ SourceLens opencv_lens(const JsonFields& root, const std::string& model) {
   require_no_skew(root);
   if (!model.empty() && !stated.empty() && model != stated)
     throw FieldFailure{{ErrorKind::usage, "--model is \"" + model + "\", allowed " + std::string(stated) +
-                                              ", which the file says"}};
+                                              ", which " + root.file() + " says"}};
   SourceLens out;
   out.format = LensFormat::opencv;
   out.assumed = stated.empty() && model.empty();

@@ -12,6 +12,11 @@ namespace {
 
 using nlohmann::json;
 
+// What this file says itself of a document.
+struct Refusal : YAML::Exception {
+  using YAML::Exception::Exception;
+};
+
 json scalar(const YAML::Node& node) {
   const std::string& text = node.Scalar();
   if (node.Tag() == "!") return text;  // quoted
@@ -28,7 +33,7 @@ class AliasedNodes {
  public:
   json value_of(const YAML::Node& node, int depth) {
     constexpr int kDeepest = 32;
-    if (depth > kDeepest) throw YAML::Exception(node.Mark(), "too deep");
+    if (depth > kDeepest) throw Refusal(node.Mark(), "too deep");
     take(1, node.Mark());
     switch (node.Type()) {
       case YAML::NodeType::Scalar:
@@ -42,7 +47,7 @@ class AliasedNodes {
       case YAML::NodeType::Map: {
         json map = json::object();
         for (const auto& item : node) {
-          if (!item.first.IsScalar()) throw YAML::Exception(item.first.Mark(), "a key is not a text");
+          if (!item.first.IsScalar()) throw Refusal(item.first.Mark(), "a key is not a text");
           take_text(item.first);
           map[item.first.Scalar()] = value_of(item.second, depth + 1);
         }
@@ -55,7 +60,7 @@ class AliasedNodes {
 
  private:
   void take(std::size_t values, const YAML::Mark& mark) {
-    if (values > left_) throw YAML::Exception(mark, "more than a million values");
+    if (values > left_) throw Refusal(mark, "more than a million values");
     left_ -= values;
   }
   // A long text takes the room of many values.
@@ -74,7 +79,9 @@ Result<json> parse_yaml(const std::string& text, const std::string& file) {
     return AliasedNodes().value_of(YAML::Load(plain), 0);
   } catch (const YAML::Exception& e) {
     const std::string line = e.mark.is_null() ? "" : "line " + std::to_string(e.mark.line + 1) + ": ";
-    return Error{ErrorKind::bad_input, file + ": " + line + "is not YAML: " + e.msg};
+    // The library's own words are about its parser; the place is what helps.
+    const auto* own = dynamic_cast<const Refusal*>(&e);
+    return Error{ErrorKind::bad_input, file + ": " + line + "is not YAML" + (own ? ": " + own->msg : "")};
   }
 }
 

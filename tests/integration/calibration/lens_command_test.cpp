@@ -132,6 +132,10 @@ TEST_F(LensCommand, WrongUsageIsOneLine) {
        {"", "6x8", "6:30", "6x8:0", "6x8:-3", "6x8:nan", "1x8:30", "6x8:30:circles", "6x8:30x", "2x2:3"})
     expect_refused({"a.png", "--board", board}, 2, "--board");
   expect_refused({"a.png", "--board", "6x8:30:charuco", "--marker", "30"}, 2, "--marker");
+  expect_refused({"a.png", "--board", "6x8:30:charuco", "--marker", "0"}, 2, "--marker");
+  expect_refused({"a.png", "--board", "6x8:30", "--marker", "20"}, 2, "--marker goes with");
+  expect_refused({"--corners", "a.json", "--marker", "20"}, 2, "--marker goes with");
+  expect_refused({"--corners", "a.json", "--corners-out", ""}, 2, "--corners-out");
   // Before anything is read or solved.
   expect_refused({"--corners", path("absent.json"), "--gravity", "0,0"}, 2, "--gravity");
 }
@@ -145,6 +149,9 @@ TEST_F(LensCommand, BadFilesAreNamed) {
                                     "{\"image_size\":[640,480],\"views\":[{\"points\":[[0,0,0,NaN,1]]}]}"));
   expect_refused({"--corners", path("bad.json")}, 3, "bad.json");
   expect_refused({"--corners", path("absent.json")}, 3, "absent.json");
+  EXPECT_EQ(calibrate({"--corners", path("bad.json")}).err,
+            "lightwell: " + path("bad.json") +
+                ": line 1: is not JSON from 'NaN,1]]}]}' on\n");  // our words, not the library's
   ASSERT_TRUE(write_file_atomically(path("none.json"), "{\"image_size\":[640,480],\"views\":[]}"));
   expect_refused({"--corners", path("none.json")}, 3, "0 views");
 }
@@ -157,7 +164,8 @@ TEST_F(LensCommand, BrokenPicturesAreNamed) {
   // The first bytes of a PNG file with a header of 64 x 64 and nothing behind it.
   ASSERT_TRUE(write_file_atomically(
       path("cut.png"), std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x40\0\0\0\x40\x08\0\0\0\0", 29)));
-  expect_refused({files[0], path("cut.png"), "--board", "6x8:32.5"}, 3, "cut.png");
+  expect_refused({files[0], path("cut.png"), "--board", "6x8:32.5"}, 3,
+                 "cut.png: is no PNG picture: its header is damaged\n");
   expect_refused({files[0], kData.string(), "--board", "6x8:32.5"}, 3, kData.string());
   std::vector<std::uint8_t> grey(3 * 64 * 48, 128);
   ASSERT_TRUE(write_file_atomically(path("small.jpg"), encode_jpeg(64, 48, grey, 90).value()));

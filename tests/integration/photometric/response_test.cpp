@@ -203,8 +203,41 @@ TEST_F(CalibrateResponse, BadInputIsRefusedInOneLineAndNothingIsChanged) {
   expect_refused({"response", path(""), "--out", path("response.json")}, 3, path(""), "response.json");
 }
 
+TEST_F(CalibrateResponse, ARefusalIsOneLineThoughMuchWasAssumed) {
+  write("patches.csv", good_csv());
+  const auto run = calibrate({"response", path("patches.csv"), "--out", path("absent/response.json")});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  EXPECT_EQ(run.out, "");
+}
+
+TEST_F(CalibrateResponse, NoCommandWritesAFileWithoutAName) {
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"response", "p.csv"},
+                                                  {"lens", "--corners", "c.json"},
+                                                  {"import", "l.yaml"},
+                                                  {"orient", "lens.json", "--gravity", "0,0,1"},
+                                                  {"chart"},
+                                                  {"flat", "t.mkv", "--lens", "l", "--response", "r"},
+                                                  {"brackets", "a", "b", "c"},
+                                                  {"colour", "c.csv", "--response", "r"},
+                                                  {"report", "dir"}})
+    for (const char* out : {"", "-"}) {
+      auto arguments = command;
+      arguments.insert(arguments.end(), {"--out", out});
+      const auto run = calibrate(arguments);
+      EXPECT_EQ(run.exit_code, 2) << command[0] << run.err;
+      EXPECT_THAT(run.err, testing::HasSubstr("--out: value '" + std::string(out) + "', allowed"));
+      EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    }
+}
+
 TEST_F(CalibrateResponse, WrongUsageEndsWithTwoAndAMissingFolderWithOne) {
   write("patches.csv", good_csv());
+  expect_refused({"response", path("patches.csv"), "--recording", "t.mkv", "--positions", "p.csv",
+                  "--code-sigma", "1", "--out", path("response.json")},
+                 2, "--code-sigma goes without --recording", "response.json");
+  expect_refused({"verify", "--lux", "1", "--environment", "e.exr", "--calibration", "dir"}, 2,
+                 "--calibration goes with --recording", "response.json");
   auto arguments = command("patches.csv");
   arguments.insert(arguments.end(), {"--model", "cubic"});
   expect_refused(arguments, 2, "--model = cubic", "response.json");

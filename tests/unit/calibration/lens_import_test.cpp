@@ -433,6 +433,7 @@ TEST_F(LensImport, AModelAtOddsWithXiOrWithTheOptionIsRefused) {
     ASSERT_FALSE(refused.ok());
     EXPECT_EQ(refused.error().kind, ErrorKind::usage);
     EXPECT_THAT(refused.error().message, HasSubstr("--model is \"" + std::string(asked)));
+    EXPECT_THAT(refused.error().message, HasSubstr("source says"));  // the file
   }
   expect_refused(kKalibr, "--model", ErrorKind::usage, {{}, "cam0", "fisheye"});
   expect_refused(replaced(kYaml, "0.0067000000000000002 ]", "0.0067, 0.1 ]"), "perspective");
