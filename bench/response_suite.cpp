@@ -119,7 +119,7 @@ std::vector<Row> bracket_rows(const std::filesystem::path& folder, const Options
                      [&photographs, solver = solver](std::size_t) {
                        (void)calibration::fit_brackets(photographs, solver);
                      },
-                     {{"median_error_of_unseen_exposures", fit->median_error}}});
+                     {{"median_error_of_unseen_exposures", fit->median_error.value()}}});
   }
   const std::string baseline = cases.front().name;
   return time_in_turns("office brackets", std::move(cases), options, baseline, {1, 3});

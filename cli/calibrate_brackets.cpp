@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,27 @@ Result<std::vector<calibration::Photograph>> read_all(const Options& o) {
   return photographs;
 }
 
+std::string percent(const std::optional<double>& error) {
+  char text[32] = "unknown";
+  if (error) std::snprintf(text, sizeof text, "%.2f %%", 100 * *error);
+  return text;
+}
+
+void print(const calibration::BracketFit& fit) {
+  for (const auto& p : fit.predictions)
+    std::printf("%s  %10.6f s  foretold from the others to %s (median of %zu pixels)\n", p.file.c_str(),
+                p.exposure_s, percent(p.median_error).c_str(), p.pixels);
+  const auto& of = fit.channel_median_error;
+  if (fit.median_error)
+    std::printf("median error %s (red %s, green %s, blue %s) by the curve of green",
+                percent(fit.median_error).c_str(), percent(of[0]).c_str(), percent(of[1]).c_str(),
+                percent(of[2]).c_str());
+  else
+    std::printf("error unknown: no exposure was kept out, which takes four photographs or more that overlap");
+  std::printf("; %s\n", fit.absolute ? "cd/m2 by aperture and ISO: check with `calibrate verify`"
+                                     : "luminance in units of mid grey, as no aperture and ISO are known");
+}
+
 int run(const Options& o) {
   if (o.solver != "debevec" && o.solver != "robertson")
     return fail(usage("--solver = " + o.solver.substr(0, 40) + ": allowed debevec, robertson"));
@@ -91,14 +113,7 @@ int run(const Options& o) {
                             .c_str());
     return 0;
   }
-  for (const auto& p : fit->predictions)
-    std::printf("%s  %10.6f s  foretold from the others to %.2f %% (median of %zu pixels)\n", p.file.c_str(),
-                p.exposure_s, 100 * p.median_error, p.pixels);
-  const auto& of = fit->channel_median_error;
-  std::printf("median error %.2f %% (red %.2f, green %.2f, blue %.2f) by the curve of green; %s\n",
-              100 * fit->median_error, 100 * of[0], 100 * of[1], 100 * of[2],
-              fit->absolute ? "cd/m2 by aperture and ISO: check with `calibrate verify`"
-                            : "luminance in units of mid grey, as no aperture and ISO are known");
+  print(*fit);
   return 0;
 }
 

@@ -166,8 +166,8 @@ Response as_response(const std::vector<double>& exposures, double level_cd_m2, d
   return response;
 }
 
-double median_of(std::vector<float>& values) {
-  if (values.empty()) return 0;
+std::optional<double> median_of(std::vector<float>& values) {
+  if (values.empty()) return std::nullopt;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return static_cast<double>(*middle);
@@ -289,7 +289,7 @@ Result<BracketFit> fit_brackets(std::vector<Photograph> photographs, BracketSolv
     std::vector<float> spread;
     for (std::size_t z = 32; z < 224; ++z)
       spread.push_back(static_cast<float>(std::abs((*curve)[c][z] / (*curve)[kGreen][z] - 1)));
-    fit.channel_spread[c] = median_of(spread);
+    fit.channel_spread[c] = *median_of(spread);
   }
   return fit;
 }
@@ -330,10 +330,14 @@ std::string channel_warning(const BracketFit& fit) {
 }
 
 nlohmann::ordered_json report_to_json(const BracketFit& fit) {
+  const auto or_null = [](const std::optional<double>& error) {
+    return error ? nlohmann::ordered_json(*error) : nlohmann::ordered_json();
+  };
+  const auto& of = fit.channel_median_error;
   nlohmann::ordered_json out = {
       {"schema", "lightwell.bracket-fit/1"},
-      {"median_error", fit.median_error},
-      {"channel_median_error", fit.channel_median_error},
+      {"median_error", or_null(fit.median_error)},
+      {"channel_median_error", {or_null(of[0]), or_null(of[1]), or_null(of[2])}},
       {"error_of", "all channels by green's curve, photographs at a quarter of their size"},
       {"absolute", fit.absolute},
       {"channel_spread", fit.channel_spread},
@@ -341,7 +345,7 @@ nlohmann::ordered_json report_to_json(const BracketFit& fit) {
   for (const Prediction& p : fit.predictions)
     out["predictions"].push_back({{"file", p.file},
                                   {"exposure_s", p.exposure_s},
-                                  {"median_error", p.median_error},
+                                  {"median_error", or_null(p.median_error)},
                                   {"pixels", p.pixels}});
   return out;
 }

@@ -37,15 +37,18 @@ enum class BracketSolver { debevec, robertson };
 struct Prediction {
   std::string file;
   double exposure_s = 0;
-  double median_error = 0;  // relative, of the unclipped pixels of all three channels
+  std::optional<double>
+      median_error;  // relative, of the unclipped pixels of all three channels; none: there are none
   std::size_t pixels = 0;
 };
 
 struct BracketFit {
   Response response;  // piecewise linear through the 8 bit codes, of green
   std::vector<Prediction> predictions;
-  double median_error = 0;  // over the pixels and channels of all of them, by the curve of green
-  std::array<double, 3> channel_median_error = {0, 0, 0};  // of red, green, blue alone
+  // Over the pixels and channels of all of them, by the curve of green; none: nothing was foretold, as with three
+  // photographs, whose middle one is needed by the fit.
+  std::optional<double> median_error;
+  std::array<std::optional<double>, 3> channel_median_error;  // of red, green, blue alone
   bool absolute = false;  // scaled by aperture and ISO (ISO 2720, K = 12.5); else 1 at code 118
   std::array<double, 3> channel_spread = {0, 0,
                                           0};  // median relative difference of each colour's curve from green

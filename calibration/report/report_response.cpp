@@ -228,10 +228,13 @@ ReportSection response_section(const Response& response, const json& file) {
     out.warning = assumed_of(file) + warning_of(fit);
     if (out.verdict.empty()) out.warning += "the response is nowhere known to 5 %. ";
   } else if (file.contains("brackets")) {
-    out.verdict =
-        formatted("%.1f %% between exposures", 100 * value_or(file.at("brackets"), "median_error", 0));
+    if (has_number(file.at("brackets"), "median_error"))
+      out.verdict =
+          formatted("%.1f %% between exposures", 100 * file.at("brackets").at("median_error").get<double>());
+    else
+      out.warning = "the response says nothing about its error: too few exposures. ";
     if (!file.at("brackets").value("absolute", false))
-      out.warning = "luminance is relative: compare with a meter. ";
+      out.warning += "luminance is relative: compare with a meter. ";
   } else {
     out.warning = "the response says nothing about its error. ";
   }

@@ -123,6 +123,24 @@ TEST_F(CalibrateMore, OfficeBracketsGiveTheResponseThatCameWithThem) {
   }
 }
 
+TEST_F(CalibrateMore, ThreeBracketsForetellNothingAndSaySo) {
+  const auto a = photograph("a.jpg", 1), b = photograph("b.jpg", 0.25), c = photograph("c.jpg", 0.06);
+  std::vector<std::string> command = {"brackets",           a, b, c, "--exposures", "1,0.25,0.06", "--out",
+                                      path("response.json")};
+  const auto text = calibrate(command);
+  ASSERT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, testing::HasSubstr("error unknown: no exposure was kept out"));
+  EXPECT_THAT(text.out, testing::Not(testing::HasSubstr("0.00 %")));
+  command.emplace_back("--json");
+  const auto report = nlohmann::json::parse(calibrate(command).out);
+  EXPECT_TRUE(report.at("median_error").is_null());
+  EXPECT_TRUE(report.at("channel_median_error").at(1).is_null());
+  EXPECT_TRUE(report.at("predictions").empty());
+  EXPECT_TRUE(read_json("response.json").at("brackets").at("median_error").is_null());
+  ASSERT_EQ(calibrate({"report", path(""), "--out", path("report.html")}).exit_code, 0);
+  EXPECT_THAT(*read_text_file(path("report.html")), testing::HasSubstr("says nothing about its error"));
+}
+
 TEST_F(CalibrateMore, BracketsThatCannotBeSolvedAreRefused) {
   const auto a = photograph("a.jpg", 1), b = photograph("b.jpg", 0.25), c = photograph("c.jpg", 0.06);
   const auto small = photograph("small.jpg", 0.06, 512);
