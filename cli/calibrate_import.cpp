@@ -68,11 +68,11 @@ int run(const ImportOptions& o) {
   const std::string report = calibration::import_report(*source, *converted).dump();
   if (const Status status = write_file_atomically(o.out, report + "\n"); !status) return fail(status.error());
   if (source->assumed)
-    std::fprintf(
-        stderr,
-        "lightwell: %s: names no lens model: %s is assumed, which is wrong for a perspective lens; state "
-        "it by --model fisheye\n",
-        printable(o.file).c_str(), source->model.c_str());
+    std::fprintf(stderr,
+                 "lightwell: %s: names no lens model: %s is assumed, for its image is too wide for a "
+                 "perspective lens; "
+                 "state it by --model fisheye\n",
+                 printable(o.file).c_str(), source->model.c_str());
   if (o.json)
     std::printf("%s\n", report.c_str());
   else
@@ -99,7 +99,11 @@ Command add_calibrate_import(CLI::App& calibrate) {
                    : "value '" + text + "', allowed opencv, kalibr, ocamcalib, mrcal";
       });
   command->add_option("--camera", o->camera, "Of a Kalibr file with several cameras: cam0, cam1, ..");
-  command->add_option("--model", o->model, "Of an OpenCV file that names none: fisheye|omnidir; else fisheye")
+  command
+      ->add_option("--model", o->model,
+                   "Of an OpenCV file that names none: fisheye|omnidir; else fisheye where the image is too "
+                   "wide for a "
+                   "perspective lens")
       ->check(CLI::IsMember({"fisheye", "omnidir"}));
   command
       ->add_option("--max-theta", o->max_theta_deg,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -120,6 +121,30 @@ std::string_view stated_model(const JsonFields& fields) {
   return stated;
 }
 
+// The widest circle that the model shows around its axis, in radians if the lens is a fisheye: to the image's farthest
+// corner.
+double farthest_corner(const PinholePlane& plane, const std::array<int, 2>& size) {
+  const Vec2d low = (plane.center + Vec2d(0.5, 0.5)).cwiseQuotient(plane.focal);
+  const Vec2d high = (Vec2d(size[0] - 0.5, size[1] - 0.5) - plane.center).cwiseQuotient(plane.focal);
+  return low.cwiseAbs().cwiseMax(high.cwiseAbs()).norm();
+}
+
+// Four coefficients that nobody named are k1 … k4 of a fisheye, or k1, k2, p1, p2 of a perspective lens: the numbers do
+// not tell, the image does. A perspective lens that reached two focal lengths from its axis would show 127 degrees,
+// which none does that such coefficients are fitted to; a fisheye reaches that far at 115 degrees off axis.
+void require_fisheye(const JsonFields& fields, const PinholePlane& plane, const std::array<int, 2>& size) {
+  constexpr double kNoPerspectiveLens = 2;
+  const double corner = farthest_corner(plane, size);
+  if (corner >= kNoPerspectiveLens) return;
+  char text[300];
+  std::snprintf(
+      text, sizeof text,
+      ": names no lens model, and its image reaches %.2f focal lengths from the axis: allowed without a name "
+      "from %g on, nearer a perspective lens looks the same; --model fisheye states it",
+      corner, kNoPerspectiveLens);
+  throw FieldFailure{{ErrorKind::usage, fields.file() + text}};
+}
+
 void require_no_skew(const JsonFields& fields) {
   for (const char* key : {"alpha", "skew"})
     if (fields.has(key) && fields.number(key) != 0)
@@ -142,6 +167,7 @@ SourceLens opencv_lens(const JsonFields& root, const std::string& model) {
   const bool omnidir = stated == kOmnidir || model == kOmnidir;
   const std::vector<double> d = coefficients(root, omnidir ? "cv::omnidir" : "cv::fisheye");
   out.image_size = image_size(root);
+  if (out.assumed) require_fisheye(root, plane, out.image_size);
   if (omnidir) {
     if (!root.has("xi")) root.fail("xi", "is missing, which cv::omnidir has");
     const std::vector<double> xi =

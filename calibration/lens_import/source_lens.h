@@ -34,12 +34,15 @@ struct SourceLens {
 struct SourceLensOptions {
   std::optional<LensFormat> format;  // none: by the content
   std::string camera = {};           // of a file with several; empty: the only one
-  std::string model = {};  // of an OpenCV file that names none: fisheye, omnidir; empty: fisheye is assumed
+  // Of an OpenCV file that names none: fisheye, omnidir. Empty: fisheye is assumed where the image is too wide for a
+  // perspective lens.
+  std::string model = {};
 };
 
 // bad_input names file, field, value and what is allowed: a size that is missing, skew, a wrong number of
 // coefficients, numbers that are not finite, a model that is not known or at odds with its numbers. usage: several
-// cameras and none chosen, or one that is not there; a model that the file contradicts.
+// cameras and none chosen, or one that is not there; a model that the file contradicts, or that neither it nor the
+// image tells.
 Result<SourceLens> read_source_lens(const std::filesystem::path& file, const SourceLensOptions& options);
 
 }  // namespace lightwell::calibration

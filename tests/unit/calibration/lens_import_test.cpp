@@ -421,6 +421,23 @@ TEST_F(LensImport, AnOpenCvFileThatNamesNoModelIsAssumedToBeAFisheyesAndSaysSo) 
   }
 }
 
+TEST_F(LensImport, AFileThatCouldBeAPerspectiveLensIsRefusedUnlessTheModelIsStated) {
+  // OpenCV's own calibration of its sample pictures, left01.jpg to left14.jpg: k1, k2, p1, p2 with k3 held at 0.
+  const std::string webcam =
+      "%YAML:1.0\nimage_width: 640\nimage_height: 480\n"
+      "camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
+      "   data: [ 535.9, 0., 342.3, 0., 535.9, 235.6, 0., 0., 1. ]\n"
+      "distortion_coefficients: !!opencv-matrix\n   rows: 4\n   cols: 1\n   dt: d\n"
+      "   data: [ -0.2664, -0.0386, 0.0018, -0.0003 ]\n";
+  expect_refused(webcam, "names no lens model", ErrorKind::usage);
+  expect_refused(webcam, "--model fisheye states it", ErrorKind::usage);
+  EXPECT_TRUE(read(webcam, {{}, "", "fisheye"}).ok());
+  EXPECT_TRUE(read(webcam + "distortion_model: fisheye\n").ok());
+  // The farthest corner: 421.75 and 400.75 px, 2.04 focal lengths; with a focal length of 300 px 1.98.
+  EXPECT_TRUE(read(kYaml).ok());
+  expect_refused(replaced(kYaml, "285.5", "300"), "1.98 focal lengths", ErrorKind::usage);
+}
+
 TEST_F(LensImport, AModelAtOddsWithXiOrWithTheOptionIsRefused) {
   expect_refused(kYaml + "distortion_model: omnidir\n", "xi is missing");
   expect_refused(kYaml + "distortion_model: fisheye\nxi: 1.2\n", "distortion_model = \"fisheye\"");
@@ -634,6 +651,13 @@ TEST_F(LensImport, OpenCvsFilesAreRefusedByFieldAndValue) {
   std::string deep = "<opencv_storage>";
   for (int i = 0; i < 100000; ++i) deep += "<a>";
   expect_refused(deep, "too deep");
+  // Entities are not expanded, and what is no storage is none.
+  expect_refused(replaced(kXml, "<opencv_storage>",
+                          "<!DOCTYPE a [<!ENTITY b \"848\"><!ENTITY c \"&b;&b;\">]><opencv_storage>"),
+                 "source: ");
+  expect_refused(replaced(kXml, "848", "&c;"), "image_width = \"&c;\"");
+  expect_refused("<?xml version=\"1.0\"?><svg/>", "expected <opencv_storage>");
+  expect_refused("<?xml version=\"1.0\"?>", "expected <opencv_storage>");
   expect_refused("image_width: [\n", "line");
   expect_refused("", "format");
   expect_refused("just a sentence", "format");
