@@ -15,7 +15,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kFlatSchema = "lightwell.flat/1";
+// The number is that of the oldest reader that uses the file rightly: /2 has gains, which readers of /1 would pass by.
+constexpr const char* kFlatSchema = "lightwell.flat";
+constexpr int kNewestSchema = 2;
 
 // A value a pixel is stored as a 16 bit integer times a power of two: exact for what has been read back once, within
 // 1/65536 of the largest value for what has not.
@@ -84,14 +86,16 @@ std::vector<float> as_stored(const std::vector<float>& values) {
 }
 
 json flat_field_to_json(const FlatField& flat) {
-  json out = {{"schema", kFlatSchema}, {"image_size", flat.image_size}, {"vignetting", flat.vignetting}};
+  json out = {{"schema", std::string(kFlatSchema) + (flat.gain.empty() ? "/1" : "/2")},
+              {"image_size", flat.image_size},
+              {"vignetting", flat.vignetting}};
   if (!flat.offset_codes.empty()) out["offset_codes"] = packed_json(flat.offset_codes);
   if (!flat.gain.empty()) out["gain"] = packed_json(flat.gain);
   return out;
 }
 
 FlatField flat_field_from_json(const JsonFields& fields) {
-  fields.require_schema(kFlatSchema);
+  fields.require_schema(kFlatSchema, kNewestSchema);
   FlatField flat;
   std::array<double, 2> size{};
   fields.numbers("image_size", size);
@@ -105,7 +109,8 @@ FlatField flat_field_from_json(const JsonFields& fields) {
   const std::size_t pixels =
       static_cast<std::size_t>(flat.image_size[0]) * static_cast<std::size_t>(flat.image_size[1]);
   if (fields.has("offset_codes")) flat.offset_codes = values_from(fields.object("offset_codes"), pixels);
-  if (fields.has("gain")) flat.gain = values_from(fields.object("gain"), pixels);
+  if (fields.has("gain"))  // for a while files of /1 had it too
+    flat.gain = values_from(fields.object("gain"), pixels);
   return flat;
 }
 

@@ -119,6 +119,17 @@ void JsonFields::require_schema(std::string_view schema) const {
     fail("schema", "= " + shown(get("schema")) + ": allowed \"" + std::string(schema) + "\"");
 }
 
+void JsonFields::require_schema(std::string_view name, int newest) const {
+  const std::string found = text("schema");
+  std::string allowed;
+  for (int version = 1; version <= newest; ++version) {
+    const std::string schema = std::string(name) + "/" + std::to_string(version);
+    if (found == schema) return;
+    allowed += (version > 1 ? ", \"" : "\"") + schema + "\"";
+  }
+  fail("schema", "= " + shown(get("schema")) + ": allowed " + allowed);
+}
+
 const nlohmann::json& JsonFields::array_of(std::string_view key, std::size_t count) const {
   const nlohmann::json& value = get(key);
   if (!value.is_array() || value.size() != count)

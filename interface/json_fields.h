@@ -41,6 +41,8 @@ class JsonFields {
   [[nodiscard]] std::int64_t whole(std::string_view key, std::int64_t lowest, std::int64_t highest) const;
   [[nodiscard]] std::string text(std::string_view key) const;
   void require_schema(std::string_view schema) const;
+  // "schema": "NAME/1" to "NAME/newest".
+  void require_schema(std::string_view name, int newest) const;
   // values.size() numbers, each finite and within the range
   void numbers(std::string_view key, std::span<double> values, double lowest = -kAny,
                double highest = kAny) const;

@@ -9,13 +9,17 @@
 namespace lightwell {
 namespace {
 
-constexpr const char* kLensSchema = "lightwell.lens/1";
+// The number is that of the oldest reader that uses the file rightly: /2 has a zenith, which readers of /1 would pass by
+// and turn all light wrong.
+constexpr const char* kLensSchema = "lightwell.lens";
+constexpr int kNewestSchema = 2;
 constexpr double kDegreesPerRadian = 180 / kPi;
 
 }  // namespace
 
 nlohmann::json lens_to_json(const Lens& lens) {
-  nlohmann::json out = {{"schema", kLensSchema},
+  const bool tilted = lens.zenith != Vec3d::UnitZ();
+  nlohmann::json out = {{"schema", std::string(kLensSchema) + (tilted ? "/2" : "/1")},
                         {"model", "kannala-brandt"},
                         {"image_size", lens.image_size},
                         {"focal", {lens.focal.x(), lens.focal.y()}},
@@ -23,12 +27,12 @@ nlohmann::json lens_to_json(const Lens& lens) {
                         {"k", lens.k},
                         {"max_theta_deg", lens.max_theta_rad * kDegreesPerRadian}};
   // Files of cameras whose gravity is unknown stay as they were.
-  if (lens.zenith != Vec3d::UnitZ()) out["zenith"] = {lens.zenith.x(), lens.zenith.y(), lens.zenith.z()};
+  if (tilted) out["zenith"] = {lens.zenith.x(), lens.zenith.y(), lens.zenith.z()};
   return out;
 }
 
 Lens lens_from_json(const JsonFields& fields) {
-  fields.require_schema(kLensSchema);
+  fields.require_schema(kLensSchema, kNewestSchema);
   Lens lens;
   std::array<double, 2> size{};
   fields.numbers("image_size", size);
@@ -45,7 +49,8 @@ Lens lens_from_json(const JsonFields& fields) {
   if (!(degrees > 0 && degrees <= 180))
     fields.fail("max_theta_deg", "= " + std::to_string(degrees) + ": allowed above 0, at most 180");
   lens.max_theta_rad = std::min(degrees / kDegreesPerRadian, kPi);
-  if (fields.has("zenith")) fields.numbers("zenith", {lens.zenith.data(), 3}, -1, 1);
+  if (fields.has("zenith"))  // for a while files of /1 had it too
+    fields.numbers("zenith", {lens.zenith.data(), 3}, -1, 1);
   return lens;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <span>
 #include <string>
 
 #include "interface/atomic_file.h"
@@ -16,6 +17,7 @@
 namespace lightwell {
 namespace {
 
+using nlohmann::json;
 using test::TemporaryFolder;
 
 Calibration example() {
@@ -134,6 +136,55 @@ TEST(CalibrationIo, OldFilesAreReadAndKeepTheirId) {
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(std::get<LogResponse>(read->response.model).b, 208.3);
   EXPECT_EQ(read->id, "9089c8543b5f51f7");
+}
+
+json file_of(const char* name, const Calibration& calibration) {
+  return json::parse(calibration_to_json(calibration)).at(name);
+}
+
+// A reader that knows /1 alone would use a tilted lens as a level one, and pixels without their gains.
+TEST(CalibrationIo, WhatAnOlderReaderWouldPassByRaisesTheSchemaAndNothingElseDoes) {
+  Calibration c = example();
+  EXPECT_EQ(file_of("lens", c)["schema"], "lightwell.lens/2");
+  EXPECT_EQ(file_of("flat", c)["schema"], "lightwell.flat/1");
+  c.lens.zenith = Vec3d::UnitZ();
+  EXPECT_EQ(file_of("lens", c)["schema"], "lightwell.lens/1");
+  EXPECT_FALSE(file_of("lens", c).contains("zenith"));
+  c.flat.gain.assign(31 * 17, 1.01F);
+  EXPECT_EQ(file_of("flat", c)["schema"], "lightwell.flat/2");
+}
+
+TEST(CalibrationIo, FilesOfEveryAgeAreReadAndThoseOfTheFutureAreRefused) {
+  const Calibration c = example();
+  json all = json::parse(calibration_to_json(c));
+  const auto read = [&] { return calibration_from_json(all.dump(), "x"); };
+  const auto id = read().value().id;
+  all["lens"]["schema"] = "lightwell.lens/1";  // a zenith under /1, as it was written for some days
+  ASSERT_TRUE(read()) << read().error().message;
+  EXPECT_EQ(read()->lens.zenith, c.lens.zenith);
+  EXPECT_EQ(read()->id, id);
+  all["lens"].erase("zenith");  // and before gravity was known at all
+  ASSERT_TRUE(read()) << read().error().message;
+  EXPECT_EQ(read()->lens.zenith, Vec3d(Vec3d::UnitZ()));
+  all["flat"]["gain"] = all["flat"]["offset_codes"];
+  all["flat"]["gain"]["scale"] = 0x1p-15;
+  std::string ones;
+  for (int i = 0; i < 31 * 17; ++i) ones += std::string("\xff\x7f", 2);
+  all["flat"]["gain"]["data"] = base64_encode(std::as_bytes(std::span(ones)));
+  ASSERT_TRUE(read()) << read().error().message;  // gains under /1 likewise
+  EXPECT_EQ(read()->flat.gain.size(), 31U * 17);
+  for (const auto& [file, schema] :
+       {std::pair("lens", "lightwell.lens/3"), std::pair("flat", "lightwell.flat/3"),
+        std::pair("lens", "lightwell.lens/0"), std::pair("lens", "lightwell.flat/1")}) {
+    json future = all;
+    future[file]["schema"] = schema;
+    const auto refused = calibration_from_json(future.dump(), "x");
+    ASSERT_FALSE(refused) << schema;
+    EXPECT_EQ(refused.error().kind, ErrorKind::bad_input);
+    EXPECT_NE(refused.error().message.find("schema = \"" + std::string(schema) + "\": allowed"),
+              std::string::npos)
+        << refused.error().message;
+  }
 }
 
 TEST(CalibrationIo, IdTellsAnyChangeOfContent) {
