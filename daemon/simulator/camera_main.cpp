@@ -64,7 +64,8 @@ void declare(CLI::App& app, CommandLine& c) {
       ->capture_default_str();
   app.add_option("--exposure", c.probe.exposure_us, "Microseconds at the start [the scene's own]");
   app.add_option("--response", c.probe.response, "response.json of the sensor [logarithmic, eight decades]");
-  app.add_option("--lens", c.probe.lens, "lens.json, of --size [a fisheye of 180 degrees]");
+  app.add_option("--lens", c.probe.lens,
+                 "lens.json, of --size; its zenith tilts the camera [a fisheye of 180 degrees]");
   app.add_option("--noise", c.probe.noise_codes, "Temporal noise, standard deviation in 12 bit codes")
       ->capture_default_str();
   app.add_option("--loss", c.camera.loss, "Part of the packets that is not sent, 0 to 1")

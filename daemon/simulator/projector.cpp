@@ -33,7 +33,11 @@ float part_inside(const Lens& lens, int x, int y) {
 
 }  // namespace
 
-Projector::Projector(const Lens& lens, bool bayer) : lens_(lens), bayer_(bayer) {
+Projector::Projector(const Lens& lens, bool bayer)
+    : lens_(lens),
+      camera_from_world_(world_from_camera_rotation(lens.zenith).transpose()),
+      level_(lens.zenith == Vec3d::UnitZ()),
+      bayer_(bayer) {
   const int width = lens.image_size[0], height = lens.image_size[1];
   solid_angle_sr_.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   inside_.reserve(solid_angle_sr_.capacity());
@@ -98,7 +102,7 @@ void Projector::add_at(const Vec2d& p, const Rgbd& illuminance, std::span<float>
 }
 
 void Projector::add_ray(const Vec3d& direction, const Rgbd& illuminance, std::span<float> plane) const {
-  const Vec3d d = camera_from_world(direction);
+  const Vec3d d = camera_from_world_ * direction;
   if (std::atan2(std::hypot(d.x(), d.y()), d.z()) > lens_.max_theta_rad) return;
   add_at(lens_.project(d), illuminance, plane);
 }
@@ -119,14 +123,15 @@ std::vector<float> Projector::project(const Layer& layer) const {
 const std::vector<Projector::Taps>& Projector::taps(int width, int height) const {
   if (taps_width_ == width && taps_height_ == height) return taps_;
   taps_.assign(pixels(), {});
-  // Rows below the border of the field are not looked at: a scene may end there.
+  // Rows below the border of a level camera's field are not looked at: a scene may end there.
+  const double lowest = level_ ? lens_.max_theta_rad : kPi;
   const int last_row =
-      std::clamp(static_cast<int>(std::ceil(lens_.max_theta_rad / kPi * height - 1e-9)) - 1, 0, height - 1);
+      std::clamp(static_cast<int>(std::ceil(lowest / kPi * height - 1e-9)) - 1, 0, height - 1);
   std::size_t i = 0;
   for (int y = 0; y < lens_.image_size[1]; ++y)
     for (int x = 0; x < lens_.image_size[0]; ++x, ++i) {
       if (solid_angle_sr_[i] <= 0) continue;
-      const Vec2d uv = lat_long_from_direction(world_from_camera(lens_.unproject({x, y})));
+      const Vec2d uv = lat_long_from_direction(camera_from_world_.transpose() * lens_.unproject({x, y}));
       const double column = uv.x() * width - 0.5 + width,
                    row = std::clamp(uv.y() * height - 0.5, 0.0, static_cast<double>(last_row));
       const int x0 = static_cast<int>(column), y0 = static_cast<int>(row);
@@ -167,7 +172,7 @@ std::vector<float> Projector::interpolate(const LatLongImage& image) const {
       plane[i] = top + t.v * (bottom - top);
       sum[c] += static_cast<double>(plane[i] * solid_angle_sr_[i]);
     }
-  if (!whole_field_) return plane;
+  if (!whole_field_ || !level_) return plane;
   const Rgbd exact = cap_illuminance(image, lens_.max_theta_rad);
   std::array<float, 3> scale = {1, 1, 1};
   for (int c = 0; c < channels; ++c) {
@@ -188,9 +193,10 @@ std::vector<float> Projector::scatter(const LatLongImage& image) const {
   std::vector<float> plane(pixels(), 0.0f);
   const double spacing = kRaySpacing * (bayer_ ? 2 : 1);
   const double focal = 1.2 * lens_.focal.maxCoeff();  // the distortion stretches by less than that
-  for (int y = 0; y < image.height && kPi * y / image.height < lens_.max_theta_rad; ++y) {
+  const double lowest = level_ ? lens_.max_theta_rad : kPi;
+  for (int y = 0; y < image.height && kPi * y / image.height < lowest; ++y) {
     const double top = kPi * y / image.height;
-    const double height = std::min(kPi * (y + 1) / image.height, lens_.max_theta_rad) - top;
+    const double height = std::min(kPi * (y + 1) / image.height, lowest) - top;
     const int down = std::max(1, static_cast<int>(std::ceil(height * focal / spacing)));
     const double column = 2 * kPi / image.width;
     const int across = std::max(1, static_cast<int>(std::ceil(column * focal * (top + height) / spacing)));
@@ -204,12 +210,17 @@ std::vector<float> Projector::scatter(const LatLongImage& image) const {
       const double a = top + height * j / down, b = top + height * (j + 1) / down;
       const double omega = 2 * std::sin((a + b) / 2) * std::sin((b - a) / 2) * column / across;
       const double theta = (a + b) / 2;
-      // The lens is symmetric about its axis: one projection a ring, turned to every azimuth.
+      // The lens is symmetric about its axis: for a level camera one projection a ring, turned to every azimuth.
       const double distance =
           (lens_.project({std::sin(theta), 0, std::cos(theta)}) - lens_.center).x() / lens_.focal.x();
       for (std::size_t i = 0; i < azimuth.size(); ++i) {
         const Rgb& radiance = image.at(static_cast<int>(i / static_cast<std::size_t>(across)), y);
         if ((radiance <= 0).all()) continue;
+        if (!level_) {
+          add_ray({std::sin(theta) * azimuth[i].x(), std::cos(theta), std::sin(theta) * azimuth[i].y()},
+                  omega * radiance.cast<double>(), plane);
+          continue;
+        }
         // Camera frame: x is world x = sin λ, y is −world z = −cos λ.
         const Vec2d p =
             lens_.center + distance * lens_.focal.cwiseProduct(Vec2d(azimuth[i].x(), -azimuth[i].y()));

@@ -8,6 +8,7 @@
 
 #include "daemon/simulator/scene.h"
 #include "lighting/lens.h"
+#include "lighting/orientation.h"
 
 namespace lightwell::simulator {
 
@@ -17,7 +18,7 @@ namespace lightwell::simulator {
 // one of R, G, B on an RGGB one. A ray's energy goes to the pixels around its image by bilinear weights (a
 // tent of one pixel; of two on a Bayer sensor, whose optical low-pass filter does the same, so that each of
 // the four colour sites gets its whole share). At the border of the field weights follow how much of a pixel
-// lies inside, and sum to 1 still.
+// lies inside, and sum to 1 still. The camera is tilted as the lens's zenith says; sums are exact for a level one.
 class Projector {
  public:
   Projector(const Lens& lens, bool bayer);
@@ -45,11 +46,11 @@ class Projector {
   [[nodiscard]] double channel(const Rgbd& colour, int x, int y) const;
   [[nodiscard]] std::vector<float> interpolate(const LatLongImage& image) const;
   [[nodiscard]] std::vector<float> scatter(const LatLongImage& image) const;
-  [[nodiscard]] std::vector<float> interpolate_channel(const LatLongImage& image,
-                                                       const std::vector<Taps>& taps) const;
   const std::vector<Taps>& taps(int width, int height) const;
 
   Lens lens_;
+  Eigen::Matrix3d camera_from_world_;
+  bool level_;
   bool bayer_;
   std::vector<float> solid_angle_sr_;
   std::vector<float> inside_;  // 0 to 1, part of the pixel inside the field

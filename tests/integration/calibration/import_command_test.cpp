@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "interface/atomic_file.h"
@@ -71,6 +72,28 @@ TEST_F(ImportCommand, WritesTheLensWithTheConversionsError) {
   EXPECT_THAT(text.out, HasSubstr("conversion        exact"));
 }
 
+TEST_F(ImportCommand, AFieldBeyondTheImageIsExtrapolatedAndTheFileSaysFromWhere) {
+  const std::string camera = file("camchain.yaml", kCamera);
+  ASSERT_EQ(calibrate({"import", camera}).exit_code, 0);
+  const double shown = json::parse(read_text_file(path("lens.json")).value())["max_theta_deg"];
+  const ProcessResult run = calibrate({"import", camera, "--max-theta", std::to_string(shown + 5)});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  char says[80];
+  std::snprintf(says, sizeof says, "extrapolated beyond %.1f, the farthest that the image shows", shown);
+  EXPECT_THAT(run.out, HasSubstr(says));
+  const json written = json::parse(read_text_file(path("lens.json")).value());
+  EXPECT_NEAR(written["supported_theta_deg"], shown, 1e-9);
+  EXPECT_NEAR(written["max_theta_deg"], shown + 5, 1e-5);  // six decimals of the option
+  EXPECT_NEAR(read_lens(path("lens.json")).value().max_theta_rad * 180 / kPi, shown + 5, 1e-5);
+}
+
+TEST_F(ImportCommand, GravityOfAnImportIsReadInTheFilesCameraFrame) {
+  const std::string camera = file("camchain.yaml", kCamera);
+  ASSERT_EQ(calibrate({"import", camera, "--max-theta", "80", "--gravity", "1.7,-0.4,9.66"}).exit_code, 0);
+  EXPECT_LT((read_lens(path("lens.json")).value().zenith - Vec3d(1.7, -0.4, 9.66).normalized()).norm(),
+            1e-12);
+}
+
 TEST_F(ImportCommand, RefusesInOneLineAndWritesNothing) {
   const std::string camera = file("camchain.yaml", kCamera);
   expect_refused({"import", path("absent.yaml")}, 3, "absent.yaml");
@@ -83,6 +106,15 @@ TEST_F(ImportCommand, RefusesInOneLineAndWritesNothing) {
   expect_refused({"import", file("bent.yaml", bent), "--max-theta", "100"}, 2, "allowed at most 95.");
   expect_refused({"import", camera, "--gravity", "0,0"}, 2, "--gravity");
   expect_refused({"import", camera, "--gravity", "0,0,-9.8"}, 2, "straight down");
+}
+
+TEST_F(ImportCommand, APerspectiveLensWithoutItsModelsNameIsRefused) {
+  const std::string lens =
+      file("webcam.yaml",
+           "image_width: 640\nimage_height: 480\nK: [535.9, 0, 342.3, 0, 535.9, 235.6, 0, 0, 1]\n"
+           "D: [-0.2664, -0.0386, 0.0018, -0.0003]\n");
+  expect_refused({"import", lens}, 2, "webcam.yaml: names no lens model");
+  expect_refused({"import", lens, "--model", "omnidir"}, 3, "webcam.yaml: xi is missing");
 }
 
 TEST_F(ImportCommand, AModelThatIsAssumedIsSaidInOneLineAndInTheFile) {

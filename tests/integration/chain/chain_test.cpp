@@ -6,7 +6,11 @@
 
 #include <csignal>
 
+#include "interface/atomic_file.h"
+#include "interface/environment_io.h"
+#include "interface/lens_json.h"
 #include "interface/recording.h"
+#include "lighting/direction.h"
 #include "tests/integration/chain/chain.h"
 
 namespace lightwell::test {
@@ -33,6 +37,46 @@ TEST_F(Chain, StaticIlluminanceInColourWithNoise) {
   ASSERT_TRUE(published_reaches(20)) << daemon_->stderr_text();
   expect_within(rgb_of(get("/api/v1/lights").at("total_illuminance")),
                 rgb_of(last_truth().at("total_illuminance")), 0.02);
+}
+
+// Gravity end to end: `calibrate orient` tells the lens, the simulated camera hangs so, the daemon turns its light back.
+TEST_F(Chain, ATiltedCamerasSunStandsWhereTheWorldHasIt) {
+  const Lens lens{{480, 480}, {112, 112}, {239.5, 239.5}, {0, 0, 0, 0}, 115 * kPi / 180};
+  const auto level = folder_.path() / "level.json", tilted = folder_.path() / "tilted.json";
+  ASSERT_TRUE(write_file_atomically(level, lens_to_json(lens).dump()));
+  const ProcessResult orient =
+      run_process(program("lightwell"), {"calibrate", "orient", level.string(), "--gravity", "2.9,-1.7,9.2",
+                                         "--out", tilted.string()});  // 20 degrees
+  ASSERT_EQ(orient.exit_code, 0) << orient.err;
+  // An even sphere and a sun of 3 x 3 pixels: row 35 of 128 is 50 degrees off the zenith, column 191 of 256 in the west.
+  LatLongImage sky{256, 128, std::vector<Rgb>(256 * 128, Rgb::Constant(100))};
+  for (int y = 34; y <= 36; ++y)
+    for (int x = 190; x <= 192; ++x) sky.at(x, y) = Rgb::Constant(3e6f);
+  const Vec3d sun = direction_from_lat_long(191.5 / 256, 35.5 / 128);
+  const auto map = folder_.path() / "sky.exr";
+  ASSERT_TRUE(write_environment(map, sky));
+  start_camera({"--environment", map.string(), "--size", "480x480", "--rate", "10", "--noise", "0", "--lens",
+                tilted.string()});
+  start_daemon();
+  ASSERT_TRUE(published_reaches(5)) << daemon_->stderr_text();
+  const auto set = get("/api/v1/lights");
+  // Pixels on the horizon are taken or left whole: half a degree, as often too many as too few.
+  expect_within(rgb_of(set.at("total_illuminance")), rgb_of(last_truth().at("total_illuminance")), 0.02);
+  Vec3d toward = Vec3d::Zero();
+  double power = 0, all = 0;
+  for (const auto& light : set.at("lights")) {
+    const auto& d = light.at("direction");
+    const Vec3d direction(d.at(0), d.at(1), d.at(2));
+    const double weight = luminance(rgb_of(light.at("illuminance")));
+    all += weight;
+    if (direction.dot(sun) < std::cos(5 * kPi / 180)) continue;
+    toward += weight * direction;
+    power += weight;
+  }
+  // The sun's nine pixels have 12 klx, the sky 200 π lux.
+  EXPECT_GT(power, 0.9 * all);
+  // Half a bin of a degree, half a pixel of half a degree, and the sky's own lights around.
+  EXPECT_LT(std::acos(toward.normalized().dot(sun)) * 180 / kPi, 1.0);
 }
 
 TEST_F(Chain, LightsSumToTheTotalAndStandAboveTheHorizon) {

@@ -601,6 +601,28 @@ TEST_F(LensImport, RealFilesOfMrcalAndOcamCalib) {
   }
 }
 
+TEST_F(LensImport, ACahvorFileIsFollowedWithinItsSaidError) {
+  const auto source = read(
+      "{ 'lensmodel': 'LENSMODEL_CAHVOR',\n 'intrinsics': [ 2000, 2010, 1500, 1000, 0.02, -0.03, 0.01, 0.05, "
+      "-0.02 ],\n"
+      " 'imagersize': [ 3000, 2000 ], }\n");
+  ASSERT_TRUE(source.ok()) << source.error().message;
+  EXPECT_EQ(source->model, "LENSMODEL_CAHVOR");
+  const auto c = convert_lens(*source, {});
+  ASSERT_TRUE(c.ok()) << c.error().message;
+  EXPECT_FALSE(c->exact);
+  EXPECT_LT(c->error.rms_px, 1);  // of a lens whose axis is off the image's by two degrees
+  // Where mrcal itself projects (SourceProjection.IsMrcalsOwn).
+  const std::pair<Vec3d, Vec2d> mrcals[] = {{{0.1, -0.2, 1}, {1701.886665395, 593.971011555}},
+                                            {{0.5, 0.4, 1}, {2526.204383256, 1827.593088207}},
+                                            {{-0.6, 0.3, 1}, {263.118453918, 1622.729465082}}};
+  for (const auto& [direction, pixel] : mrcals)
+    EXPECT_LE((c->lens.project(turned(*c, direction)) - pixel).norm(), 1.01 * c->error.max_px) << pixel;
+  const auto beyond = convert_lens(*source, c->supported_theta_rad + 0.1);
+  ASSERT_TRUE(beyond.ok()) << beyond.error().message;
+  EXPECT_LT(beyond->supported_theta_rad, beyond->lens.max_theta_rad);
+}
+
 TEST_F(LensImport, RoundTripsAndSolidAnglesOfImportedLensesAreExact) {
   const auto ds = convert_lens(*read(kKalibr, {{}, "cam1"}), 95 * kPi / 180);
   ASSERT_TRUE(ds.ok());

@@ -15,6 +15,7 @@
 #include "daemon/simulator/scene.h"
 #include "daemon/simulator/sensor.h"
 #include "lighting/direction.h"
+#include "lighting/orientation.h"
 
 namespace lightwell::simulator {
 namespace {
@@ -192,6 +193,54 @@ TEST(Projector, AnImageOfOneRowCoversTheHemisphereExactly) {
   EXPECT_NEAR(hemisphere_illuminance(image)[1], 4 * kPi, 1e-9);
   const Projector projector(default_lens(31, 17), false);
   EXPECT_NEAR(plane_sum(projector, projector.project({image, false})), 4 * kPi, 4 * kPi * 1e-5);
+}
+
+// ---- a camera that is tilted ----
+
+Lens tilted_lens(int size) {
+  Lens lens = default_lens(size, size);
+  lens.zenith = Vec3d(0.2, -0.3, 0.9).normalized();
+  return lens;
+}
+
+TEST(Projector, ATiltedCameraSeesARayWhereItsLensHasIt) {
+  const Projector projector(tilted_lens(64), false);
+  const Lens& lens = projector.lens();
+  // Straight up lies at the zenith's own image, the axis of the camera where the world has it.
+  for (const auto& [direction, at] :
+       {std::pair(Vec3d(Vec3d::UnitY()), lens.project(lens.zenith)),
+        std::pair(Vec3d(world_from_camera_rotation(lens.zenith) * Vec3d::UnitZ()), lens.center)}) {
+    std::vector<float> plane(projector.pixels(), 0.0f);
+    projector.add_ray(direction, Rgbd::Constant(1000), plane);
+    EXPECT_NEAR(plane_sum(projector, plane), 1000, 1000 * 1e-6);  // float sums of four
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x)
+        if (std::abs(x - at.x()) >= 1 || std::abs(y - at.y()) >= 1) {
+          EXPECT_EQ(plane[static_cast<std::size_t>(y * 64 + x)], 0.0f) << x << " " << y;
+        }
+  }
+}
+
+TEST(Projector, ATiltedCameraSeesAnEvenSphereEvenlyAndABurningPixelWhole) {
+  const Projector projector(tilted_lens(200), false);
+  LatLongImage sphere = black_image(100, 50);
+  for (Rgb& p : sphere.pixels) p = Rgb::Constant(5);
+  for (const bool smooth : {true, false}) {
+    const std::vector<float> plane = projector.project({sphere, smooth});
+    for (int y = 0; y < 200; ++y)
+      for (int x = 0; x < 200; ++x)
+        if ((Vec2d(x, y) - projector.lens().center).norm() < 94) {
+          EXPECT_NEAR(plane[static_cast<std::size_t>(y * 200 + x)], 5, 5 * 0.01)
+              << smooth;  // the rays' pattern
+        }
+  }
+  for (const auto& [x, y] : {std::pair(0, 0), {511, 10}, {256, 100}, {100, 64}}) {
+    LatLongImage image = black_image(512, 256);
+    image.at(x, y) = Rgb::Constant(1e8f);
+    const double energy = 1e8 * image.pixel_solid_angle_sr(y);
+    const std::vector<float> plane = projector.project({image, false});
+    EXPECT_NEAR(plane_sum(projector, plane), energy, energy * 1e-5) << x << " " << y;  // float sums
+  }
 }
 
 // ---- discs ----
