@@ -68,7 +68,9 @@ TEST(CsvTable, NumbersOfNoUseAreRefusedWithTheRange) {
   for (std::size_t row = 0; row < table->rows(); ++row) {
     const auto value = table->luminance(row, "l");
     EXPECT_EQ(value.ok(), good[row]) << table->text(row, "l");
-    if (!value) EXPECT_THAT(value.error().message, HasSubstr("allowed 0, or a number from 1e-9 to 1e12"));
+    if (!value) {
+      EXPECT_THAT(value.error().message, HasSubstr("allowed 0, or a number from 1e-9 to 1e12"));
+    }
   }
   EXPECT_FALSE(table->number(0, "l", 0, 1, "a number from 0 to 1"));
 }
