@@ -227,11 +227,13 @@ TEST(Projector, ATiltedCameraSeesAnEvenSphereEvenlyAndABurningPixelWhole) {
   for (Rgb& p : sphere.pixels) p = Rgb::Constant(5);
   for (const bool smooth : {true, false}) {
     const std::vector<float> plane = projector.project({sphere, smooth});
+    // Interpolated it is the sky itself; rays leave a pattern of 1 % an axis (projector.cpp), and here the pixels' axes
+    // lie across both of theirs.
+    const double tolerance = smooth ? 1e-6 : 0.02;
     for (int y = 0; y < 200; ++y)
       for (int x = 0; x < 200; ++x)
         if ((Vec2d(x, y) - projector.lens().center).norm() < 94) {
-          EXPECT_NEAR(plane[static_cast<std::size_t>(y * 200 + x)], 5, 5 * 0.01)
-              << smooth;  // the rays' pattern
+          EXPECT_NEAR(plane[static_cast<std::size_t>(y * 200 + x)], 5, 5 * tolerance) << smooth;
         }
   }
   for (const auto& [x, y] : {std::pair(0, 0), {511, 10}, {256, 100}, {100, 64}}) {
