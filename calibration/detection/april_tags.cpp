@@ -6,6 +6,7 @@
 #include <apriltag/tag36h11.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -58,9 +59,10 @@ class TagReader {
   // By border, one bit first.
   // scale: of the picture that is read to `grey`; widened: what white is widened by there on all sides, px. A blurred
   // corner of four checks is grey and joins its black ones, so that a tag would hang together with a square.
-  [[nodiscard]] std::array<std::vector<AprilTag>, 2> read(const cv::Mat& grey, int scale, int widened) const {
-    cv::Mat picture;
-    cv::resize(grey, picture, {}, scale, scale, scale == 1 ? cv::INTER_NEAREST : cv::INTER_CUBIC);
+  [[nodiscard]] std::array<std::vector<AprilTag>, 2> read(const cv::Mat& grey, double scale,
+                                                          int widened) const {
+    cv::Mat picture = grey.clone();
+    if (scale != 1) cv::resize(grey, picture, {}, scale, scale, scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
     const int across = 2 * widened + 1;
     cv::dilate(picture, picture, cv::Mat::ones(across, across, CV_8U));
     image_u8_t image{picture.cols, picture.rows, picture.cols, picture.data};
@@ -75,7 +77,7 @@ class TagReader {
       for (std::size_t c = 0; c < 4; ++c)
         to.corners[c] = cv::Point2f(static_cast<float>(tag->p[3 - c][0] / scale - 0.5),
                                     static_cast<float>(tag->p[3 - c][1] / scale - 0.5));
-      widen(static_cast<double>(widened) / scale, to);
+      widen(widened / scale, to);
     }
     return out;
   }
@@ -90,9 +92,8 @@ class TagReader {
 using TagsById = std::map<int, std::vector<AprilTag>>;  // the places at which each is seen
 
 // Takes what a scale shows at places where the scales before showed nothing.
-void add(const std::vector<AprilTag>& tags, int count, TagsById& out) {
+void add(const std::vector<AprilTag>& tags, TagsById& out) {
   for (const AprilTag& tag : tags) {
-    if (tag.id >= count) continue;
     std::vector<AprilTag>& places = out[tag.id];
     if (std::none_of(places.begin(), places.end(), [&](const AprilTag& other) {
           return cv::norm(centre(tag) - centre(other)) < side_px(other) / 2;
@@ -100,6 +101,9 @@ void add(const std::vector<AprilTag>& tags, int count, TagsById& out) {
       places.push_back(tag);
   }
 }
+
+// The library takes some 20 bytes a pixel.
+constexpr double kMostPixels = 32e6;
 
 }  // namespace
 
@@ -113,18 +117,25 @@ cv::Point2f centre(const AprilTag& tag) {
   return (tag.corners[0] + tag.corners[1] + tag.corners[2] + tag.corners[3]) / 4;
 }
 
-std::vector<AprilTag> find_april_tags(const cv::Mat& grey, int count) {
+AprilTags find_april_tags(const cv::Mat& grey, int count) {
   const TagReader reader;
   std::array<TagsById, 2> seen;
-  const auto look = [&](int scale, int widened) {
+  const auto look = [&](double scale, int widened) {
     const auto tags = reader.read(grey, scale, widened);
-    for (std::size_t b = 0; b < 2; ++b) add(tags[b], count, seen[b]);
+    for (std::size_t b = 0; b < 2; ++b) add(tags[b], seen[b]);
   };
-  look(1, 1);
-  look(2, 1);  // small tags, whose bits a pixel more of white would close
-  std::vector<AprilTag> out;
+  const auto pixels = static_cast<double>(grey.total());
+  look(std::min(1.0, std::sqrt(kMostPixels / pixels)), 1);
+  AprilTags out;
+  out.at_twice_its_size = 4 * pixels <= kMostPixels;
+  if (out.at_twice_its_size) look(2, 1);  // small tags, whose bits a pixel more of white would close
   for (const auto& [id, places] : seen[seen[1].size() >= seen[0].size()])
-    if (places.size() == 1) out.push_back(places.front());
+    if (id >= count)
+      out.beyond.push_back(id);
+    else if (places.size() > 1)
+      out.twice.push_back(id);
+    else
+      out.tags.push_back(places.front());
   return out;
 }
 

@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "calibration/detection/april_tags.h"
-#include "calibration/detection/chessboard.h"
+#include "calibration/detection/corner_refinement.h"
 
 namespace lightwell::calibration {
 namespace {
@@ -112,49 +112,92 @@ class Grid {
   GridLayout layout_;
 };
 
-// Whether a tag's neighbours bear it out; one with none of them may be anything.
-bool is_in_place(const AprilTag& tag, const TagsById& tags, const Grid& grid) {
+// How many of a tag's neighbours have it where it is, and how many are seen.
+struct Witnesses {
   int agree = 0, seen = 0;
+};
+
+Witnesses witnesses_of(const AprilTag& tag, const TagsById& tags, const Grid& grid) {
+  Witnesses out;
   for (const auto& [id, other] : tags) {
     if (!grid.are_neighbours(tag.id, id)) continue;
-    ++seen;
-    agree += grid.agree(tag, other);
+    ++out.seen;
+    out.agree += grid.agree(tag, other);
   }
-  return agree > 0 && 2 * agree >= seen;
+  return out;
 }
 
-// Where the edges meet at a tag's corner, in windows that end before the next corner.
+// Where the edges meet at a tag's corner, in windows that end before the next corner: the widest is still less than the
+// two bits of a border.
 // gap: between tags, sides
-std::optional<cv::Point2f> meeting_point(const cv::Mat& grey, const std::array<cv::Point2f, 4>& tag,
+std::optional<cv::Point2f> corner_of_tag(const cv::Mat& grey, const std::array<cv::Point2f, 4>& tag,
                                          std::size_t corner, double gap) {
   const double side =
       std::min(cv::norm(tag[(corner + 1) % 4] - tag[corner]), cv::norm(tag[(corner + 3) % 4] - tag[corner]));
-  std::vector<cv::Point2f> narrow = {tag[corner]}, wide = {tag[corner]};
-  refine_corners(grey, {gap * side}, narrow);
-  refine_corners(grey, {1.6 * gap * side}, wide);  // still less than the two bits of a border
-  // Where something else than two straight edges is in the windows, they find different places.
-  constexpr double kMostApart = 0.25;  // px
-  if (cv::norm(narrow[0] - wide[0]) > kMostApart) return {};
-  return narrow[0];
+  return meeting_point(grey, tag[corner], gap * side);
+}
+
+struct TagCorners {
+  std::vector<MarkerCorner> corners;
+  bool contradictory =
+      false;  // most neighbours are not where they have each other, as on a board of other columns
+};
+
+// Corners of the tags that are in place, none where most contradict each other.
+TagCorners corners_in_place(const cv::Mat& grey, const TagsById& tags, const Grid& grid, double gap) {
+  Witnesses all;
+  std::vector<const AprilTag*> in_place;
+  for (const auto& [id, tag] : tags) {
+    const Witnesses own = witnesses_of(tag, tags, grid);
+    all.agree += own.agree;
+    all.seen += own.seen;
+    // One without neighbours may be anything.
+    if (own.agree > 0 && 2 * own.agree >= own.seen) in_place.push_back(&tag);
+  }
+  TagCorners out;
+  constexpr int kTelling = 12;  // each pair counts twice: six of them
+  out.contradictory = all.seen >= kTelling && 2 * all.agree < all.seen;
+  if (2 * all.agree < all.seen) return out;
+  for (const AprilTag* tag : in_place) {
+    const auto places = grid.corners(tag->id);
+    const auto guesses = grid.seen(*tag);
+    for (std::size_t c = 0; c < 4; ++c)
+      if (const auto pixel = corner_of_tag(grey, guesses, c, gap))
+        out.corners.push_back({{places[c].x, places[c].y, 0}, *pixel});
+  }
+  return out;
 }
 
 }  // namespace
 
-std::vector<MarkerCorner> find_aprilgrid(const cv::Mat& grey, const Board& board) {
+MarkerSearch find_aprilgrid(const cv::Mat& grey, const Board& board) {
+  const AprilTags found = find_april_tags(grey, board.columns * board.rows);
   TagsById tags;
-  for (AprilTag& tag : find_april_tags(grey, board.columns * board.rows)) tags.emplace(tag.id, tag);
+  for (const AprilTag& tag : found.tags) tags.emplace(tag.id, tag);
   const auto layout = layout_of(tags, board.columns);
-  if (!layout) return {};
-  const Grid grid(board, *layout);
-  const double gap = board.pitch_mm / board.marker_mm - 1;
-  std::vector<MarkerCorner> out;
-  for (const auto& [id, tag] : tags) {
-    if (!is_in_place(tag, tags, grid)) continue;
-    const auto places = grid.corners(id);
-    const auto guesses = grid.seen(tag);
-    for (std::size_t c = 0; c < 4; ++c)
-      if (const auto pixel = meeting_point(grey, guesses, c, gap))
-        out.push_back({{places[c].x, places[c].y, 0}, *pixel});
+  TagCorners in_place;
+  if (layout)
+    in_place = corners_in_place(grey, tags, Grid(board, *layout), board.pitch_mm / board.marker_mm - 1);
+  MarkerSearch out;
+  out.corners = std::move(in_place.corners);
+  if (!out.corners.empty()) return out;
+  out.of_another_board = true;
+  const auto other = other_markers(grey, board.kind);
+  if (other.count > tags.size() + found.twice.size() + found.beyond.size())
+    out.reason = "shows " + other.name + ", a " + name(board) + " has AprilTags 36h11";
+  else if (found.beyond.size() >= kTellingMarkers)
+    out.reason = "shows AprilTags " + ids_in_words(found.beyond) + ", a " + name(board) + " has 0 to " +
+                 std::to_string(board.columns * board.rows - 1);
+  else if (found.twice.size() >= kTellingMarkers)
+    out.reason = "shows AprilTags " + ids_in_words(found.twice) + " twice";
+  else if (in_place.contradictory)
+    out.reason =
+        "shows AprilTags that are not where a " + name(board) + " has them: are its columns and rows right?";
+  else {
+    out.of_another_board = false;
+    out.reason = "shows no marker of a " + name(board);
+    if (!found.at_twice_its_size)
+      out.reason += "; pictures above 8 megapixels are not searched for tags smaller than some 25 px";
   }
   return out;
 }

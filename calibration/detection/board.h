@@ -33,7 +33,8 @@ std::string name(const Board& board);
 struct Detection {
   std::vector<Correspondence> points;  // empty: not found
   std::string reason;                  // why not
-  bool of_no_board = false;            // sharp and bright, and not even corners such as a chessboard has
+  // Sharp and bright, and not even corners such as a chessboard has; or markers, but not those of the board.
+  bool of_no_board = false;
   // Inner corners of the whole chessboard that it shows instead.
   std::optional<std::pair<int, int>> other_size;
   bool board_is_larger = false;  // a chessboard that goes on beyond its columns or rows

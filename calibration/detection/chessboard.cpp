@@ -113,8 +113,8 @@ std::optional<std::pair<int, int>> other_board(const cv::Mat& grey, const Corner
   if (asked == seen) return {};
   if (seen.first >= asked.first && seen.second >= asked.second) return size;
   for (const auto& [c, r] : {*size, std::pair(size->second, size->first)})
-    if (const auto corners = corners_of_board(grid, c, r); !corners.empty())
-      return goes_on(grey, corners, c, r) ? std::nullopt : size;
+    if (const BoardGrid board = board_of_grid(grid, c, r); !board.corners.empty())
+      return goes_on(grey, board.corners, c, r) ? std::nullopt : size;
   return {};
 }
 
@@ -124,8 +124,13 @@ ChessboardSearch find_chessboard(const cv::Mat& grey, int columns, int rows) {
   const double base = std::min(1.0, 1400.0 / std::max(grey.cols, grey.rows));
   const cv::Mat sized = scaled(grey, base);
   ChessboardSearch out;
+  BoardGrid most;  // of its corners are seen
+  const auto seen = [](const BoardGrid& board) {
+    return std::count(board.seen.begin(), board.seen.end(), true);
+  };
   int cells = 0;
   double check_px = 0;
+  bool nearly_whole = false;
   // A fisheye's dim and blurred border asks for a small picture, a far board for a large one.
   for (const double factor : {0.5, 1.0, 0.25, 2.0}) {
     const CornerGrid grid = largest_corner_grid(sized, factor);
@@ -134,29 +139,24 @@ ChessboardSearch find_chessboard(const cv::Mat& grey, int columns, int rows) {
       cells = grid.cells;
       check_px = median_check_px(grid);
     }
-    out.corners = corners_of_board(grid, columns, rows);
-    if (!out.corners.empty()) break;
+    if (BoardGrid board = board_of_grid(grid, columns, rows); seen(board) > seen(most))
+      most = std::move(board);
+    if (seen(most) == columns * rows) break;
+    nearly_whole = nearly_whole || is_nearly(grid, columns, rows);
     if (!out.other_size) out.other_size = other_board(sized, grid, columns, rows);
   }
-  if (!out.corners.empty()) out.other_size.reset();
+  if (!most.corners.empty()) out.other_size.reset();
   out.shows_checks = cells >= std::clamp((columns - 1) * (rows - 1) / 3, 2, 20);
-  if (out.corners.empty() && out.shows_checks && !out.other_size)
+  out.corners = std::move(most.corners);
+  out.seen = std::move(most.seen);
+  if (out.corners.empty() && out.shows_checks && nearly_whole && !out.other_size) {
     out.corners = search_by_quads(sized, {columns, rows}, check_px);
+    out.seen.assign(out.corners.size(), true);
+  }
   // The centre of pixel (0, 0) is the origin at every scale.
   const cv::Point2f half(0.5f, 0.5f);
   for (auto& p : out.corners) p = (p + half) / base - half;
   return out;
-}
-
-void refine_corners(const cv::Mat& grey, const std::vector<double>& neighbour_px,
-                    std::vector<cv::Point2f>& corners) {
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const int half = std::clamp(static_cast<int>(0.35 * neighbour_px[i]), 2, 11);
-    std::vector<cv::Point2f> one = {corners[i]};
-    cv::cornerSubPix(grey, one, {half, half}, {-1, -1},
-                     {cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 60, 1e-3});
-    corners[i] = one[0];
-  }
 }
 
 bool goes_on(const cv::Mat& grey, const std::vector<cv::Point2f>& corners, int columns, int rows) {

@@ -12,7 +12,8 @@
 namespace lightwell::calibration {
 
 struct ChessboardSearch {
-  std::vector<cv::Point2f> corners;  // inner ones, row by row; empty where they are not all found
+  std::vector<cv::Point2f> corners;  // inner ones, row by row; empty where too few of them are found
+  std::vector<bool> seen;            // of each, whether it is; else it is about where its neighbours have it
   // Columns and rows of a whole board of another size, beyond which the checks do not go on.
   std::optional<std::pair<int, int>> other_size;
   bool shows_checks = false;  // a third of the board's checks, or twenty, hang together somewhere
@@ -20,11 +21,6 @@ struct ChessboardSearch {
 
 // A picture without checks costs some tenths of a second a megapixel, whatever its texture.
 ChessboardSearch find_chessboard(const cv::Mat& grey, int columns, int rows);
-
-// Corners moved to where the picture's edges meet, each in a window that fits between its neighbours.
-// neighbours: for each corner the distance to its nearest one, px
-void refine_corners(const cv::Mat& grey, const std::vector<double>& neighbour_px,
-                    std::vector<cv::Point2f>& corners);
 
 // Whether the checks go on beyond the outermost corners, so that the board has more of them.
 bool goes_on(const cv::Mat& grey, const std::vector<cv::Point2f>& corners, int columns, int rows);

@@ -8,6 +8,8 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "calibration/detection/corner_refinement.h"
+
 namespace lightwell::calibration {
 namespace {
 
@@ -37,19 +39,12 @@ bool is_edge(const cv::Mat& grey, cv::Point2f from, cv::Point2f to, bool light_a
   return light(0.25f) && light(0.5f) && light(0.75f);
 }
 
-float between(const cv::Mat& grey, cv::Point2f p) {
-  const auto x = std::floor(p.x), y = std::floor(p.y);
-  const float a = p.x - x, b = p.y - y;
-  return (1 - b) * ((1 - a) * at(grey, {x, y}) + a * at(grey, {x + 1, y})) +
-         b * ((1 - a) * at(grey, {x, y + 1}) + a * at(grey, {x + 1, y + 1}));
-}
-
 // Whether light and dark alternate as near a saddle as `radius`, too.
 bool stands_near(const cv::Mat& grey, const Saddle& saddle, float radius) {
   float least_light = 255, most_dark = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     const cv::Point2f middle = saddle.edge[k] + saddle.edge[(k + 1) % 4];
-    const float code = between(grey, saddle.pixel + middle * (radius / std::max(0.1, cv::norm(middle))));
+    const float code = code_at(grey, saddle.pixel + middle * (radius / std::max(0.1, cv::norm(middle))));
     if (saddle.light_after(k))
       least_light = std::min(least_light, code);
     else
@@ -196,6 +191,50 @@ Extent trim(CornerGrid& grid) {
   }
 }
 
+// Puts a corner that is missing where its neighbours have it: those on both sides, or the two beyond it on one side, the
+// mean of them. Colours alternate. False where neighbours are missing, too.
+bool fill(CornerGrid& grid, const Extent& extent) {
+  const auto at = [&](int c, int r) -> const Saddle* {
+    const auto found = grid.corners.find({c, r});
+    return found == grid.corners.end() ? nullptr : &found->second;
+  };
+  const auto guess = [&](int c, int r) -> std::optional<Saddle> {
+    cv::Point2f sum(0, 0);
+    float count = 0;
+    const Saddle* neighbour = nullptr;
+    const auto vote = [&](const Saddle* near, const Saddle* far, bool between) {
+      if (!near || !far) return;
+      const float weight = between ? 4 : 1;
+      sum += weight * (between ? (near->pixel + far->pixel) / 2 : 2 * near->pixel - far->pixel);
+      count += weight;
+      neighbour = near;
+    };
+    vote(at(c - 1, r), at(c + 1, r), true);
+    vote(at(c, r - 1), at(c, r + 1), true);
+    for (const int way : {-1, 1}) {
+      vote(at(c + way, r), at(c + 2 * way, r), false);
+      vote(at(c, r + way), at(c, r + 2 * way), false);
+    }
+    if (count == 0) return {};
+    Saddle out = *neighbour;
+    out.pixel = sum / count;
+    out.light_after_first = !out.light_after_first;
+    out.contrast = 0;
+    return out;
+  };
+  const auto all = static_cast<std::size_t>(extent.columns() * extent.rows());
+  while (grid.corners.size() < all) {
+    std::map<std::pair<int, int>, Saddle> more;
+    for (int r = extent.top; r <= extent.bottom; ++r)
+      for (int c = extent.left; c <= extent.right; ++c)
+        if (!at(c, r))
+          if (const auto corner = guess(c, r)) more.emplace(std::pair(c, r), *corner);
+    if (more.empty()) return false;
+    grid.corners.merge(more);
+  }
+  return true;
+}
+
 CornerGrid quarter_turned(const CornerGrid& grid) {
   CornerGrid out;
   for (auto [place, corner] : grid.corners) {
@@ -240,28 +279,41 @@ std::optional<std::pair<int, int>> size_of_grid(CornerGrid grid) {
   return whole ? std::optional(std::pair(e.columns(), e.rows())) : std::nullopt;
 }
 
-std::vector<cv::Point2f> corners_of_board(CornerGrid grid, int columns, int rows) {
-  if (columns < 2 || rows < 2 || grid.cells < (columns - 1) * (rows - 1)) return {};
+bool is_nearly(CornerGrid grid, int columns, int rows) {
   trim(grid);
-  std::vector<cv::Point2f> best;
+  const Extent e = extent_of(grid);
+  const auto found = std::minmax({e.columns(), e.rows()}), asked = std::minmax({columns, rows});
+  return found.first >= asked.first - 1 && found.second >= asked.second - 1;
+}
+
+BoardGrid board_of_grid(CornerGrid grid, int columns, int rows) {
+  const Extent found = trim(grid);
+  const bool upright = found.columns() == columns && found.rows() == rows;
+  if (columns < 2 || rows < 2 || (!upright && (found.columns() != rows || found.rows() != columns)))
+    return {};
+  if (4 * grid.corners.size() < 3 * static_cast<std::size_t>(columns * rows)) return {};
+  if (!fill(grid, found)) return {};
+  BoardGrid best;
   float best_turn = -2;
   for (int turn = 0; turn < 4; ++turn, grid = quarter_turned(grid)) {
     const Extent e = extent_of(grid);
-    if (e.columns() != columns || e.rows() != rows ||
-        grid.corners.size() != static_cast<std::size_t>(columns * rows))
-      continue;
-    std::vector<cv::Point2f> corners;
+    if (e.columns() != columns || e.rows() != rows) continue;
+    BoardGrid board;
     for (int r = e.top; r <= e.bottom; ++r)
-      for (int c = e.left; c <= e.right; ++c) corners.push_back(grid.corners.at({c, r}).pixel);
+      for (int c = e.left; c <= e.right; ++c) {
+        const Saddle& corner = grid.corners.at({c, r});
+        board.corners.push_back(corner.pixel);
+        board.seen.push_back(corner.contrast > 0);
+      }
     const Saddle& first = grid.corners.at({e.left, e.top});
     const bool told_apart = (columns + rows) % 2 == 1;
     if (told_apart && !first.light_after_first) continue;
-    const cv::Point2f along = corners[static_cast<std::size_t>(columns) - 1] - corners[0];
-    const cv::Point2f down = corners[static_cast<std::size_t>(columns * (rows - 1))] - corners[0];
-    const auto upright = static_cast<float>(along.x / cv::norm(along) + down.y / cv::norm(down));
-    if (best.empty() || upright > best_turn) {
-      best = std::move(corners);
-      best_turn = upright;
+    const cv::Point2f along = board.corners[static_cast<std::size_t>(columns) - 1] - board.corners[0];
+    const cv::Point2f down = board.corners[static_cast<std::size_t>(columns * (rows - 1))] - board.corners[0];
+    const auto turned = static_cast<float>(along.x / cv::norm(along) + down.y / cv::norm(down));
+    if (best.corners.empty() || turned > best_turn) {
+      best = std::move(board);
+      best_turn = turned;
     }
   }
   return best;

@@ -27,10 +27,18 @@ CornerGrid largest_corner_grid(const cv::Mat& grey, double scale);
 // Columns and rows of a grid that is a whole rectangle of at least 3 × 3 corners, borders of the background left out.
 std::optional<std::pair<int, int>> size_of_grid(CornerGrid grid);
 
-// The grid's corners, row by row, of a board of columns x rows; empty where it is of another size, or lacks a corner or an edge.
-// Borders with less than half of their corners are of the background. The first corner is one with light in the
+// Whether a grid reaches as far as a board of columns x rows, but for a row and a column; or farther.
+bool is_nearly(CornerGrid grid, int columns, int rows);
+
+struct BoardGrid {
+  std::vector<cv::Point2f> corners;  // row by row; empty where the grid is of another size
+  std::vector<bool> seen;  // whether the picture shows it; else it is where its neighbours have it, roughly
+};
+
+// The grid as a board of columns x rows, of which a quarter of the corners may be hidden, if some of each border is
+// seen. Borders with less than half of their corners are of the background. The first corner is one with light in the
 // quadrant of growing columns and rows where the board tells its ends apart by that, else the one that turns the board
 // least.
-std::vector<cv::Point2f> corners_of_board(CornerGrid grid, int columns, int rows);
+BoardGrid board_of_grid(CornerGrid grid, int columns, int rows);
 
 }  // namespace lightwell::calibration

@@ -6,6 +6,8 @@
 #include "calibration/detection/aprilgrid.h"
 #include "calibration/detection/board.h"
 #include "calibration/detection/chessboard.h"
+#include "calibration/detection/corner_refinement.h"
+#include "calibration/detection/guided_search.h"
 #include "calibration/detection/markers.h"
 
 namespace lightwell::calibration {
@@ -39,19 +41,23 @@ Detection chessboard(const cv::Mat& grey, const Board& board) {
   refine_corners(grey, nearest_px(corners), corners);
   out.board_is_larger = goes_on(grey, corners, board.columns, board.rows);
   for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (!search.seen[i]) continue;
     const auto column = static_cast<double>(i % static_cast<std::size_t>(board.columns));
     const auto row = static_cast<double>(i / static_cast<std::size_t>(board.columns));
     out.points.push_back({{board.pitch_mm * column, board.pitch_mm * row, 0}, {corners[i].x, corners[i].y}});
   }
+  if (out.points.size() < corners.size()) out.points = with_neighbours(grey, board, std::move(out.points));
   return out;
 }
 
 Detection markers(const cv::Mat& grey, const Board& board) {
   Detection out;
-  const std::vector<MarkerCorner> found =
+  const MarkerSearch search =
       board.kind == BoardKind::charuco ? find_charuco(grey, board) : find_aprilgrid(grey, board);
+  out.reason = search.reason;
+  out.of_no_board = search.of_another_board;
   std::vector<cv::Point2f> corners;
-  for (const MarkerCorner& corner : found) corners.push_back(corner.pixel);
+  for (const MarkerCorner& corner : search.corners) corners.push_back(corner.pixel);
   if (board.kind == BoardKind::charuco) {
     std::vector<double> room = nearest_px(corners);
     // Beside a corner stand the markers, half of what they leave of the pitch away.
@@ -59,8 +65,8 @@ Detection markers(const cv::Mat& grey, const Board& board) {
     refine_corners(grey, room, corners);
   }
   for (std::size_t i = 0; i < corners.size(); ++i)
-    out.points.push_back({found[i].target_mm, {corners[i].x, corners[i].y}});
-  if (out.points.empty()) out.reason = "shows no marker of a " + name(board);
+    out.points.push_back({search.corners[i].target_mm, {corners[i].x, corners[i].y}});
+  out.points = with_neighbours(grey, board, std::move(out.points));
   return out;
 }
 

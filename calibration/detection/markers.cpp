@@ -9,6 +9,8 @@
 #include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "calibration/detection/april_tags.h"
+
 namespace lightwell::calibration {
 namespace {
 
@@ -17,27 +19,48 @@ struct Markers {
   std::vector<int> ids;
 };
 
-// Markers with ids below `count`, the first of each id.
-Markers find_markers(const cv::Mat& grey, int dictionary, int border_bits, int count) {
+cv::Point2f centre(const std::vector<cv::Point2f>& corners) {
+  return (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
+}
+
+Markers all_markers(const cv::Mat& grey, int dictionary) {
   auto parameters = cv::aruco::DetectorParameters::create();
-  parameters->markerBorderBits = border_bits;
   parameters->adaptiveThreshWinSizeMax = 53;       // large markers too
   parameters->polygonalApproxAccuracyRate = 0.06;  // a fisheye bends their sides
-  Markers all, out;
-  cv::aruco::detectMarkers(grey, cv::aruco::getPredefinedDictionary(dictionary), all.corners, all.ids,
+  Markers out;
+  cv::aruco::detectMarkers(grey, cv::aruco::getPredefinedDictionary(dictionary), out.corners, out.ids,
                            parameters);
-  std::map<int, bool> seen;
-  for (std::size_t i = 0; i < all.ids.size(); ++i) {
-    if (all.ids[i] >= count || seen[all.ids[i]]) continue;
-    seen[all.ids[i]] = true;
-    out.ids.push_back(all.ids[i]);
-    out.corners.push_back(all.corners[i]);
-  }
   return out;
 }
 
-cv::Point2f centre(const std::vector<cv::Point2f>& corners) {
-  return (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
+// Markers of one dictionary, as a board has them and otherwise.
+struct BoardMarkers {
+  Markers markers;                 // each once
+  std::vector<int> twice, beyond;  // ids seen in two places, left out; ids that the board has not
+};
+
+BoardMarkers find_markers(const cv::Mat& grey, int dictionary, int count) {
+  const Markers all = all_markers(grey, dictionary);
+  std::map<int, std::vector<std::size_t>> seen;
+  for (std::size_t i = 0; i < all.ids.size(); ++i) {
+    std::vector<std::size_t>& places = seen[all.ids[i]];
+    const auto same = [&](std::size_t other) {
+      return cv::norm(centre(all.corners[i]) - centre(all.corners[other])) <
+             cv::norm(all.corners[i][2] - all.corners[i][0]) / 2;
+    };
+    if (std::none_of(places.begin(), places.end(), same)) places.push_back(i);
+  }
+  BoardMarkers out;
+  for (const auto& [id, places] : seen)
+    if (id >= count)
+      out.beyond.push_back(id);
+    else if (places.size() > 1)
+      out.twice.push_back(id);
+    else {
+      out.markers.ids.push_back(id);
+      out.markers.corners.push_back(all.corners[places.front()]);
+    }
+  return out;
 }
 
 // Where the markers of a ChArUco board stand: row by row in every other square, from the second of the first row on;
@@ -124,19 +147,72 @@ std::vector<MarkerCorner> corners_between(const Markers& markers, const CharucoL
 
 }  // namespace
 
-std::vector<MarkerCorner> find_charuco(const cv::Mat& grey, const Board& board) {
+MarkerSearch find_charuco(const cv::Mat& grey, const Board& board) {
   constexpr int kDictionaries[] = {cv::aruco::DICT_4X4_250,  cv::aruco::DICT_5X5_250,
                                    cv::aruco::DICT_6X6_250,  cv::aruco::DICT_7X7_250,
                                    cv::aruco::DICT_4X4_1000, cv::aruco::DICT_5X5_1000,
                                    cv::aruco::DICT_6X6_1000, cv::aruco::DICT_ARUCO_ORIGINAL};
   const int count = board.columns * board.rows / 2;
-  Markers best;
+  BoardMarkers best;
+  const auto size = [](const BoardMarkers& m) {
+    return m.markers.ids.size() + m.twice.size() + m.beyond.size();
+  };
   for (const int d : kDictionaries)
-    if (Markers m = find_markers(grey, d, 1, count); m.ids.size() > best.ids.size()) best = std::move(m);
-  if (best.ids.size() < 2) return {};
+    if (BoardMarkers m = find_markers(grey, d, count); size(m) > size(best)) best = std::move(m);
+  MarkerSearch out;
   const CharucoLayout today{board, false}, legacy{board, true};
-  const bool is_legacy = board.rows % 2 == 0 && disorder(best, legacy) < disorder(best, today);
-  return corners_between(best, is_legacy ? legacy : today);
+  const bool is_legacy =
+      board.rows % 2 == 0 && disorder(best.markers, legacy) < disorder(best.markers, today);
+  out.corners = corners_between(best.markers, is_legacy ? legacy : today);
+  if (!out.corners.empty()) return out;
+  out.of_another_board = true;
+  const auto other = other_markers(grey, board.kind);
+  if (other.count > size(best))
+    out.reason = "shows " + other.name + ", a " + name(board) + " has ArUco markers";
+  else if (best.beyond.size() >= kTellingMarkers)
+    out.reason = "shows markers " + ids_in_words(best.beyond) + ", a " + name(board) + " has 0 to " +
+                 std::to_string(count - 1);
+  else if (best.twice.size() >= kTellingMarkers)
+    out.reason = "shows markers " + ids_in_words(best.twice) + " twice";
+  else if (best.markers.ids.size() > kTellingMarkers)
+    out.reason =
+        "shows markers that are not where a " + name(board) + " has them: are its columns and rows right?";
+  else {
+    out.of_another_board = false;
+    out.reason = "shows no marker of a " + name(board);
+  }
+  return out;
+}
+
+OtherMarkers other_markers(const cv::Mat& grey, BoardKind kind) {
+  struct Kind {
+    int dictionary;
+    const char* name;
+    bool is_aruco;
+  };
+  constexpr Kind kKinds[] = {{cv::aruco::DICT_4X4_1000, "ArUco markers of 4x4 bits", true},
+                             {cv::aruco::DICT_5X5_1000, "ArUco markers of 5x5 bits", true},
+                             {cv::aruco::DICT_6X6_1000, "ArUco markers of 6x6 bits", true},
+                             {cv::aruco::DICT_7X7_1000, "ArUco markers of 7x7 bits", true},
+                             {cv::aruco::DICT_APRILTAG_25h9, "AprilTags 25h9", false},
+                             {cv::aruco::DICT_APRILTAG_36h10, "AprilTags 36h10", false}};
+  OtherMarkers out;
+  const auto add = [&](std::size_t count, const char* name) {
+    if (count >= std::max(kTellingMarkers, out.count + 1)) out = {count, name};
+  };
+  if (kind == BoardKind::charuco)
+    add(find_april_tags(grey, std::numeric_limits<int>::max()).tags.size(), "AprilTags 36h11");
+  for (const Kind& k : kKinds)
+    if (kind == BoardKind::aprilgrid || !k.is_aruco) add(all_markers(grey, k.dictionary).ids.size(), k.name);
+  return out;
+}
+
+std::string ids_in_words(const std::vector<int>& ids) {
+  constexpr std::size_t kMost = 4;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(ids.size(), kMost); ++i)
+    out += (i > 0 ? ", " : "") + std::to_string(ids[i]);
+  return ids.size() <= kMost ? out : out + " and " + std::to_string(ids.size() - kMost) + " more";
 }
 
 }  // namespace lightwell::calibration

@@ -61,6 +61,30 @@ inline Print april_grid(const calibration::Board& board, int border_bits = 2) {
   };
 }
 
+// A ChArUco board as OpenCV prints it today: the first square is black; before 4.6 it was white where the rows are even.
+// first_id: of its first marker
+inline Print charuco(const calibration::Board& board, bool legacy = false,
+                     int dictionary = cv::aruco::DICT_5X5_250, int first_id = 0) {
+  const int white = legacy && board.rows % 2 == 0 ? 0 : 1;
+  auto markers = std::make_shared<std::map<std::pair<int, int>, Marker>>();
+  int id = first_id;
+  for (int r = 0; r < board.rows; ++r)
+    for (int c = 0; c < board.columns; ++c)
+      if ((r + c) % 2 == white) markers->emplace(std::pair(r, c), Marker(dictionary, id++, 1));
+  return [board, markers](double x, double y) {
+    const double margin = (board.pitch_mm - board.marker_mm) / 2;
+    const int c = static_cast<int>(std::floor(x / board.pitch_mm)),
+              r = static_cast<int>(std::floor(y / board.pitch_mm));
+    if (c < -1 || r < -1 || c > board.columns || r > board.rows) return -1.0;
+    if (c < 0 || r < 0 || c == board.columns || r == board.rows) return 1.0;  // the sheet's border
+    const auto marker = markers->find({r, c});
+    if (marker == markers->end()) return 0.0;
+    const double u = (x - c * board.pitch_mm - margin) / board.marker_mm,
+                 v = (y - r * board.pitch_mm - margin) / board.marker_mm;
+    return u < 0 || v < 0 || u >= 1 || v >= 1 ? 1.0 : marker->second.at(u, v);
+  };
+}
+
 // Where a board stands before a lens: its middle in a direction, then tilted and turned about it.
 struct View {
   Lens lens;
@@ -79,8 +103,8 @@ struct View {
     return lens.project(rotation * board_mm + origin);
   }
 
-  // Mean of 3 x 3 samples a pixel, then 0.7 px of blur and noise of 2 codes.
-  [[nodiscard]] calibration::GreyPicture photograph(const Print& print) const {
+  // Mean of 3 x 3 samples a pixel, then 0.7 px of blur and noise of 2 codes; dark beyond the lens's field.
+  [[nodiscard]] calibration::GreyPicture photograph(const Print& print, unsigned seed = 5) const {
     const int width = lens.image_size[0], height = lens.image_size[1];
     const Vec3d normal = rotation.col(2);
     constexpr double kNowhere = 1e9;  // mm
@@ -94,9 +118,10 @@ struct View {
         places.push_back(distance > 0 && place.norm() < kNowhere ? Vec2d(place.head<2>())
                                                                  : Vec2d(kNowhere, kNowhere));
       }
-    cv::Mat light(height, width, CV_32F);
+    cv::Mat light = cv::Mat::zeros(height, width, CV_32F);
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
+        if (lens.theta_rad({x, y}) > lens.max_theta_rad) continue;
         const Vec2d* upper = &places[static_cast<std::size_t>(y * (width + 1) + x)];
         const Vec2d* lower = upper + width + 1;
         float sum = 0;
@@ -110,7 +135,7 @@ struct View {
         light.at<float>(y, x) = sum;
       }
     cv::GaussianBlur(light, light, {}, 0.7);
-    std::mt19937 random(5);
+    std::mt19937 random(seed);
     std::normal_distribution<double> noise(0, 2);
     calibration::GreyPicture out{width, height, {}};
     for (int y = 0; y < height; ++y)
