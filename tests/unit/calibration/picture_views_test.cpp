@@ -147,6 +147,16 @@ std::vector<Texture> textures() {
                      const double u = std::fmod(x + pitch, pitch), v = std::fmod(y + pitch, pitch);
                      return std::min(u, v) < 0.2 * pitch ? 0 : 1;
                    }});
+  for (const double pitch : {20.0, 30.0, 45.0})
+    for (const double joint : {2.0, 3.0})
+      for (const bool turned : {false, true})
+        out.push_back({"joints of " + std::to_string(joint) + " every " + std::to_string(pitch),
+                       [=](double x, double y) {
+                         const double c = turned ? 0.97 : 1, n = turned ? 0.24 : 0;
+                         const double u = std::fmod(c * x + n * y + 400 * pitch, pitch),
+                                      v = std::fmod(-n * x + c * y + 400 * pitch, pitch);
+                         return std::min(u, v) < joint ? 0.9 : 0.3;
+                       }});
   // Checks of every colour but in no order: corners of four checks now and then, few in a row.
   out.push_back({"a random mosaic", [](double x, double y) {
                    return coin(static_cast<int>(std::floor(x / 8)), static_cast<int>(std::floor(y / 8)));
