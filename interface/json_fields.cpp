@@ -187,8 +187,13 @@ Result<nlohmann::json> parse_json(const std::string& text, const std::string& fi
       return bad("line " + std::to_string(line_of(text, text.size())) + ": is not JSON: ends too early");
     return bad("line " + std::to_string(line_of(text, e.byte)) + ": is not JSON from " +
                shown_at(text, e.byte) + " on");
-  } catch (const nlohmann::json::out_of_range&) {
-    return bad("holds a number beyond 1.8e308: allowed finite numbers");
+  } catch (const nlohmann::json::out_of_range& e) {
+    // It ends with the number between quotes.
+    const std::string_view words = e.what();
+    const std::size_t end = words.rfind('\''), start = end == 0 ? end : words.rfind('\'', end - 1);
+    const bool quoted = end != std::string_view::npos && start != std::string_view::npos && start < end;
+    const std::string number = quoted ? std::string(words.substr(start + 1, end - start - 1)) : "a number";
+    return bad("holds " + number + ": allowed numbers up to 1.8e308");
   }
 }
 
