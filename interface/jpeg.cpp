@@ -51,7 +51,7 @@ Result<JpegPicture> decode_jpeg(std::string_view bytes, const std::string& name,
     return Error{ErrorKind::bad_input, name + ": " + std::to_string(width) + "x" + std::to_string(height) +
                                            " pixels: allowed 2^28"};
   const tjscalingfactor factor{1, shrink};
-  JpegPicture picture{TJSCALED(width, factor), TJSCALED(height, factor), {}};
+  JpegPicture picture{TJSCALED(width, factor), TJSCALED(height, factor), {}, width, height};
   picture.rgb.resize(static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) * 3);
   constexpr int kTightRows = 0;
   if (tjDecompress2(decoder.get(), data, bytes.size(), picture.rgb.data(), picture.width, kTightRows,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lighting/result.h"
 #include "lighting/spherical_cap.h"
 
 namespace lightwell {
@@ -56,6 +57,14 @@ std::size_t nearest_bin(const PolarGrid& grid, double theta_rad, double lambda_r
       std::clamp(static_cast<int>(theta_rad / grid.theta_max_rad * grid.rings), 0, grid.rings - 1);
   const int sector = std::clamp(static_cast<int>(lambda_rad / (2 * kPi) * grid.sectors), 0, grid.sectors - 1);
   return static_cast<std::size_t>(ring) * static_cast<std::size_t>(grid.sectors) +
+         static_cast<std::size_t>(sector);
+}
+
+// The bin that a pixel of an image is of, in a map of a ring a row and a sector a column. Column x spans the azimuths
+// below 2π (W/2 − x) / W: the sectors run the other way, from the middle.
+std::size_t bin_of_pixel(const LatLongImage& image, int x, int y) {
+  const int sector = (image.width / 2 - x - 1 + image.width) % image.width;
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
          static_cast<std::size_t>(sector);
 }
 
@@ -167,19 +176,29 @@ LatLongImage lat_long_from_polar_map(const PolarMap& map) {
   LatLongImage image;
   image.height = std::max(2, static_cast<int>(std::lround(map.grid.rings * kPi / map.grid.theta_max_rad)));
   image.width = map.grid.sectors + map.grid.sectors % 2;
-  const PolarGrid sphere{image.height, image.width, kPi};
-  const PolarMap whole = resample_polar(map, sphere);
-  image.pixels.resize(sphere.size());
+  const PolarMap whole = resample_polar(map, {image.height, image.width, kPi});
+  image.pixels.resize(whole.grid.size());
   for (int y = 0; y < image.height; ++y) {
     // Bins beyond the map carry its edge's radiance: nothing was measured there.
     const bool measured = (y + 0.5) * kPi / image.height < map.grid.theta_max_rad;
-    for (int x = 0; x < image.width; ++x) {
-      // Column x spans the azimuths below 2π (W/2 − x) / W: the sectors run the other way, from the middle.
-      const int sector = (image.width / 2 - x - 1 + image.width) % image.width;
-      const auto bin = static_cast<std::size_t>(y * image.width + sector);
-      image.at(x, y) = measured ? whole.rgb(bin) : Rgb(Rgb::Zero());
-    }
+    for (int x = 0; x < image.width; ++x)
+      image.at(x, y) = measured ? whole.rgb(bin_of_pixel(image, x, y)) : Rgb(Rgb::Zero());
   }
+  return image;
+}
+
+LatLongImage lat_long_of_measured(const PolarMap& map) {
+  LatLongImage image;
+  image.height = map.grid.rings;
+  image.width = map.grid.sectors;
+  verify_bug(image.width % 2 == 0 && map.grid.theta_max_rad == kPi, "a map that is not of the whole sphere");
+  image.pixels.resize(map.grid.size());
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const std::size_t bin = bin_of_pixel(image, x, y);
+      const double seen = static_cast<double>(map.solid_angle_sr[bin]) / map.grid.bin_solid_angle_sr(y);
+      image.at(x, y) = map.rgb(bin) * static_cast<float>(seen);
+    }
   return image;
 }
 

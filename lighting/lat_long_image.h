@@ -45,4 +45,8 @@ PolarMap resample_polar(const PolarMap& map, const PolarGrid& grid);
 // grid allows it (90 × 360 over a hemisphere: 360 × 180, without resampling), else resampled by area.
 LatLongImage lat_long_from_polar_map(const PolarMap& map);
 
+// A map of the whole sphere (theta_max π, an even number of sectors) of which a part was seen: a pixel has its bin's
+// illuminance over the bin's own solid angle. It is black where nothing was seen, and the image's sum is the map's.
+LatLongImage lat_long_of_measured(const PolarMap& map);
+
 }  // namespace lightwell

@@ -294,7 +294,13 @@ Result<BracketFit> fit_brackets(std::vector<Photograph> photographs, BracketSolv
   return fit;
 }
 
-std::vector<float> merge_brackets(const std::vector<Photograph>& photographs, const Response& response) {
+void scale_luminance(BracketFit& fit, double scale) {
+  for (auto& point : std::get<PiecewiseLinearResponse>(fit.response.model).points)
+    point.luminance_cd_m2 *= scale;
+  fit.scale *= scale;
+}
+
+RadiancePicture merge_brackets(const std::vector<Photograph>& photographs, const Response& response) {
   std::vector<const Photograph*> all;
   for (const Photograph& p : photographs) all.push_back(&p);
   const std::vector<double> luminance = table_of(response);
@@ -303,15 +309,19 @@ std::vector<float> merge_brackets(const std::vector<Photograph>& photographs, co
                                          [](auto* a, auto* b) { return a->exposure_s < b->exposure_s; });
   const auto shortest = *std::min_element(all.begin(), all.end(),
                                           [](auto* a, auto* b) { return a->exposure_s < b->exposure_s; });
-  std::vector<float> out(3 * pixels_of(photographs[0]));
-  for (std::size_t i = 0; i < out.size(); ++i) {
+  RadiancePicture out{photographs[0].picture.width, photographs[0].picture.height,
+                      std::vector<float>(3 * pixels_of(photographs[0])),
+                      std::vector<std::uint8_t>(pixels_of(photographs[0]), 0)};
+  for (std::size_t i = 0; i < out.rgb.size(); ++i) {
     double value = merged(all, luminance, i, reference_s);
     // Nowhere between the ends: clipped even in the shortest, dark even in the longest, or neither of both.
-    if (!(value > 0) && shortest->picture.rgb[i] >= kHigh)
+    if (!(value > 0) && shortest->picture.rgb[i] >= kHigh) {
       value = luminance[kHigh] * reference_s / shortest->exposure_s;
-    else if (!(value > 0) && longest->picture.rgb[i] > 0)
+      out.clipped[i / 3] = 1;
+    } else if (!(value > 0) && longest->picture.rgb[i] > 0) {
       value = luminance[longest->picture.rgb[i]] * reference_s / longest->exposure_s;
-    out[i] = static_cast<float>(value);
+    }
+    out.rgb[i] = static_cast<float>(value);
   }
   return out;
 }
@@ -340,6 +350,7 @@ nlohmann::ordered_json report_to_json(const BracketFit& fit) {
       {"channel_median_error", {or_null(of[0]), or_null(of[1]), or_null(of[2])}},
       {"error_of", "all channels by green's curve, photographs at a quarter of their size"},
       {"absolute", fit.absolute},
+      {"scale", fit.scale},
       {"channel_spread", fit.channel_spread},
       {"predictions", nlohmann::ordered_json::array()}};
   for (const Prediction& p : fit.predictions)

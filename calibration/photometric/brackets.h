@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "interface/jpeg.h"
+#include "lighting/picture_map.h"
 #include "lighting/response.h"
 #include "lighting/result.h"
 
@@ -50,6 +51,7 @@ struct BracketFit {
   std::optional<double> median_error;
   std::array<std::optional<double>, 3> channel_median_error;  // of red, green, blue alone
   bool absolute = false;  // scaled by aperture and ISO (ISO 2720, K = 12.5); else 1 at code 118
+  double scale = 1;       // by which a measurement then corrected it
   std::array<double, 3> channel_spread = {0, 0,
                                           0};  // median relative difference of each colour's curve from green
 };
@@ -63,8 +65,12 @@ struct BracketFit {
 // bad_input: fewer than 3 photographs or exposures, more than kMostPhotographs, different sizes, codes that do not follow the exposures.
 Result<BracketFit> fit_brackets(std::vector<Photograph> photographs, BracketSolver solver);
 
-// Radiance of every pixel, [height][width][3], from the exposures in which it is neither dark nor clipped.
-std::vector<float> merge_brackets(const std::vector<Photograph>& photographs, const Response& response);
+// Multiplies all luminances by what a meter says they are too small by.
+void scale_luminance(BracketFit& fit, double scale);
+
+// Radiance of every pixel from the exposures in which it is neither dark nor clipped; clipped: a channel of the pixel is
+// so in all of them.
+RadiancePicture merge_brackets(const std::vector<Photograph>& photographs, const Response& response);
 
 // A line for a person where red's or blue's curve is not green's, which the response is; else empty.
 std::string channel_warning(const BracketFit& fit);
