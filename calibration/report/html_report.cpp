@@ -5,6 +5,7 @@
 #include <optional>
 #include <system_error>
 
+#include "calibration/report/residual_plots.h"
 #include "calibration/report/svg_plot.h"
 #include "interface/atomic_file.h"
 #include "interface/calibration_io.h"
@@ -29,6 +30,7 @@ constexpr const char* kStyle =
     "margin:0 .3em 0 1em}"
     ".patches "
     "td{white-space:nowrap}.note{color:#435160;font-size:.9em}.row{display:flex;flex-wrap:wrap;gap:1em}"
+    ".views{gap:.6em .8em}.views figure{width:196px}.views figcaption{overflow-wrap:anywhere}"
     "figure{margin:0}figcaption{"
     "font-size:.85em;color:#435160;text-"
     "align:center}"
@@ -74,6 +76,14 @@ std::string joined(const std::vector<ReportSection>& sections, std::string Repor
   return out;
 }
 
+// The folder's own name, not where it lies.
+std::string folder_name(const std::filesystem::path& directory) {
+  std::error_code error;
+  const std::filesystem::path whole = std::filesystem::weakly_canonical(directory, error);
+  const std::string name = file_name((error ? directory : whole).string());
+  return name.empty() || name == "/" ? "this machine" : name;
+}
+
 }  // namespace
 
 Result<std::string> calibration_page(const std::filesystem::path& directory) {
@@ -99,7 +109,7 @@ Result<std::string> calibration_page(const std::filesystem::path& directory) {
       "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><title>Calibration</title><style>";
   page += kStyle;
-  page += "</style></head><body><h1>Calibration of " + escaped(directory.lexically_normal().string()) +
+  page += "</style></head><body><h1>Calibration of " + escaped(folder_name(directory)) +
           "</h1><p class=\"verdict\">" +
           (good.empty() ? "Its error is not known." : "Good to " + escaped(good) + ".") + "</p>";
   if (!warning.empty()) page += "<p class=\"warning\">But: " + escaped(warning) + "</p>";

@@ -65,6 +65,8 @@ std::string pattern_text(const json& fit) {
   if (fit.value("gain_supported", false))
     out += " Their gains differ by " + formatted("%.2f %%", 100 * fit.at("gain_rms").get<double>()) +
            ", known to " + formatted("%.2f %%.", 100 * fit.at("gain_sigma").get<double>());
+  if (is_number(fit, "masked_pixels") && fit.at("masked_pixels").get<double>() > 0)
+    out += formatted(" %.0f pixels of lamps or dust were left out.", fit.at("masked_pixels").get<double>());
   if (is_number(fit, "temperature_c"))
     out += " Measured at " + formatted("%.1f °C", fit.at("temperature_c").get<double>()) +
            ": the pattern changes with temperature.";

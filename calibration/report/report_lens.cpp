@@ -5,6 +5,7 @@
 
 #include "calibration/report/html_report.h"
 #include "calibration/report/json_access.h"
+#include "calibration/report/residual_plots.h"
 #include "calibration/report/svg_plot.h"
 
 namespace lightwell::calibration {
@@ -12,64 +13,19 @@ namespace {
 
 using nlohmann::json;
 
-// Points of a view that count: [point].
-std::vector<bool> counting_points(const json& view, std::size_t points) {
-  std::vector<bool> counts(points, view.value("used", true));
-  for (const json& index : list_or_none(view, "rejected"))
-    if (const double i = index.get<double>(); i >= 0 && i < static_cast<double>(points))
-      counts[static_cast<std::size_t>(i)] = false;
-  return counts;
-}
-
-// As many times longer than the error that the median of the points that count is seen; 0 where none counts.
-double arrow_gain(const Lens& lens, const json& views) {
-  std::vector<double> lengths;
-  for (const json& view : views) {
-    const json residuals = list_or_none(view, "residuals_px");
-    const std::vector<bool> counts = counting_points(view, residuals.size());
-    for (std::size_t i = 0; i < counts.size(); ++i)
-      if (const double dx = residuals.at(i).at(2).get<double>(), dy = residuals.at(i).at(3).get<double>();
-          counts[i])
-        lengths.push_back(std::hypot(dx, dy));
-  }
-  if (lengths.empty()) return 0;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return 0.012 * std::max(lens.image_size[0], lens.image_size[1]) / std::max(*middle, 1e-6);
-}
-
-// The image's frame with an arrow for every point.
-std::string arrows(const Lens& lens, const json& views) {
-  const double gain = arrow_gain(lens, views);
-  if (!(gain > 0)) return "";
-  const int width = lens.image_size[0], height = lens.image_size[1];
-  std::string out = "<p>Residuals of every point, " + formatted("%.0f", gain) +
-                    " times enlarged, a colour each view.</p><svg viewBox=\"0 0 " + std::to_string(width) +
-                    " " + std::to_string(height) + "\" width=\"620\" class=\"image\">";
-  const double stroke = 0.0016 * std::max(width, height);
-  const auto place = [](double v) { return formatted("%.1f", std::clamp(v, -1e5, 1e5)); };
-  int hue = 0;
-  for (const json& view : views) {
-    out += "<g stroke=\"hsl(" + std::to_string(hue) + " 70% 40%)\" stroke-width=\"" +
-           formatted("%.2f", stroke) + "\"><title>" + escaped(view.value("name", std::string())) + "</title>";
-    hue = (hue + 137) % 360;  // the golden angle: neighbours differ
-    for (const json& r : list_or_none(view, "residuals_px"))
-      out += "<path d=\"M" + place(r.at(0).get<double>()) + " " + place(r.at(1).get<double>()) + "l" +
-             place(gain * r.at(2).get<double>()) + " " + place(gain * r.at(3).get<double>()) + "\"/>";
-    out += "</g>";
-  }
-  return out + "</svg>";
-}
-
 std::string view_table(const json& views) {
   std::string out = "<table><tr><th>view</th><th>points</th><th>rejected</th><th>rms, px</th><th></th></tr>";
   for (const json& view : views)
-    out += "<tr><td>" + escaped(view.value("name", std::string())) + "</td><td>" +
+    out += "<tr><td>" + escaped(file_name(view.value("name", std::string()))) + "</td><td>" +
            (has_number(view, "points") ? formatted("%.0f", view.at("points").get<double>()) : "") +
            "</td><td>" + std::to_string(list_or_none(view, "rejected").size()) + "</td><td>" +
            (has_number(view, "rms_px") ? formatted("%.3f", view.at("rms_px").get<double>()) : "–") +
            "</td><td>" + (view.value("used", true) ? "" : "not used: ") +
-           escaped(view.value("reason", std::string())) + "</td></tr>";
+           escaped(view.value("reason", std::string())) +
+           (view.contains("repeats")
+                ? "the pose of " + escaped(file_name(view.at("repeats").get<std::string>())) + " again"
+                : "") +
+           "</td></tr>";
   return out + "</table>";
 }
 
@@ -204,6 +160,22 @@ std::string support_warning(const json& file, const Support& support, double max
          ". ";
 }
 
+// What makes the lens less sure than its numbers say.
+std::string trust_warning(const json& file) {
+  std::string out;
+  if (file.contains("constrained"))
+    out += "the points would have the projection stop growing at " +
+           formatted("%.1f°", file.at("constrained").at("theta_deg").get<double>()) +
+           ", where it is held; the uncertainty has that shift in it. ";
+  const json views = list_or_none(file, "views");
+  const auto repeats =
+      std::count_if(views.begin(), views.end(), [](const json& view) { return view.contains("repeats"); });
+  if (repeats > 0)
+    out += std::to_string(repeats) + (repeats == 1 ? " view shows" : " views show") +
+           " the board where another does, and count as new evidence. ";
+  return out;
+}
+
 }  // namespace
 
 ReportSection lens_section(const Lens& lens, const json& file) {
@@ -239,11 +211,12 @@ ReportSection lens_section(const Lens& lens, const json& file) {
       out.html += uncertainty_map(file.at("projection_uncertainty"));
     out.html += "</div>";
   }
-  out.warning += support_warning(file, support, max_deg);
+  out.warning += trust_warning(file) + support_warning(file, support, max_deg);
   if (file.contains("coverage"))
     if (const double well = well_covered_deg(file.at("coverage"), max_deg); well < support.deg - 1)
       out.warning += "points in less than half of the directions beyond " + formatted("%.0f°", well) + ". ";
-  if (file.contains("views")) out.html += arrows(lens, list_at(file, "views")) + view_table(file.at("views"));
+  if (file.contains("views"))
+    out.html += residual_plots(lens, list_at(file, "views")) + view_table(file.at("views"));
   return out;
 }
 

@@ -119,6 +119,55 @@ TEST_F(CalibrationPage, DamageInTheResponseIsRefusedFieldByField) {
   refused("/table/relative_sigma", {"null", "7", "[0.02,0.01,0.01,0.01,0.01]"});
 }
 
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST_F(CalibrationPage, ShowsTheSixWorstViewsBesideAllAndNoFolders) {
+  json file = a_lens();
+  file["views"].clear();
+  for (int v = 0; v < 9; ++v) {
+    const std::string name = "/home/somebody/pictures/board_" + std::to_string(v) + ".png";
+    file["views"].push_back({{"name", name},
+                             {"used", v != 8},
+                             {"points", 2},
+                             {"rms_px", 0.1 * (v + 1)},
+                             {"rejected", json::array()},
+                             {"reason", ""},
+                             {"residuals_px", {{100, 200, 0.3, 0.4}, {300, 40, -0.3, 0.2}}}});
+  }
+  file["views"][7]["repeats"] = "/home/somebody/pictures/board_1.png";
+  const std::string page = lens_page(file);
+  EXPECT_THAT(page, Not(HasSubstr("somebody")));
+  EXPECT_EQ(count_of(page, "<figcaption>board_"), 6U);
+  EXPECT_THAT(page, HasSubstr("<figcaption>board_7.png, 0.800 px</figcaption>"));
+  EXPECT_THAT(page, Not(HasSubstr("<figcaption>board_8")));  // was not used
+  EXPECT_THAT(page, Not(HasSubstr("<figcaption>board_1")));  // among the best
+  EXPECT_THAT(page, HasSubstr("the pose of board_1.png again"));
+  EXPECT_THAT(page, HasSubstr("1 view shows the board where another does"));
+  EXPECT_THAT(page,
+              HasSubstr("Each arrow goes from where a picture shows a point to where the lens puts it, "));
+}
+
+TEST_F(CalibrationPage, SaysThatTheProjectionWasHeldGrowing) {
+  json file = a_lens();
+  file["constrained"] = {{"theta_deg", 78.4}, {"least_slope", 0.02}, {"shift_sigma", 3.0}};
+  EXPECT_THAT(lens_page(file), HasSubstr("stop growing at 78.4°, where it is held"));
+  expect_damage_is_refused("lens.json", file, "/constrained", {"7", "[]", "{}"});
+}
+
+TEST_F(CalibrationPage, SaysHowManyPixelsWereNoPartOfAnEvenScene) {
+  const json flat = {{"schema", "lightwell.flat/1"},
+                     {"image_size", {640, 480}},
+                     {"vignetting", {-0.1, 0, 0}},
+                     {"fit", {{"masked_pixels", 312}}}};
+  const auto page = page_of("flat.json", flat);
+  ASSERT_TRUE(page.ok()) << page.error().message;
+  EXPECT_THAT(*page, HasSubstr("312 pixels of lamps or dust were left out"));
+}
+
 TEST_F(CalibrationPage, HugeAndTinyNumbersMakeAPage) {
   for (const char* luminance : {"1e308", "5e-324", "1e-310", "1.7e308"}) {
     json file = a_response();
