@@ -15,6 +15,7 @@
 #include "cli/progress.h"
 #include "interface/atomic_file.h"
 #include "interface/option_range.h"
+#include "interface/printable.h"
 #include "interface/same_file.h"
 
 namespace lightwell::cli {
@@ -165,6 +166,8 @@ int run(const LensOptions& options) {
                  "sure than it "
                  "says; --target printed takes that into account\n",
                  in_words(*solved->doubted_shape).c_str());
+  for (const std::string& warning : calibration::lens_warnings(*solved))
+    std::fprintf(stderr, "lightwell: %s\n", printable(warning).c_str());
   if (options.json)
     std::printf("%s\n", report.c_str());
   else

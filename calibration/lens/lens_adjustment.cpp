@@ -131,8 +131,7 @@ class SlopeCost : public ceres::SizedCostFunction<1, 8> {
  public:
   explicit SlopeCost(double theta) : theta_(theta) {}
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    constexpr double kLeastSlope = 0.02;  // a fiftieth of the centre's: well above what check(Lens) refuses
-    constexpr double kSteepness = 1e4;    // pixels a unit of slope: heavier than all points together
+    constexpr double kSteepness = 1e4;  // pixels a unit of slope: heavier than all points together
     double slope = 1, power = 1;
     std::array<double, 4> by_k{};
     for (std::size_t i = 0; i < 4; ++i) {
@@ -150,6 +149,8 @@ class SlopeCost : public ceres::SizedCostFunction<1, 8> {
  private:
   double theta_;
 };
+
+constexpr int kWalls = 48;
 
 std::vector<int> held(const LensFreedom& freedom) {
   std::vector<int> out;
@@ -182,6 +183,20 @@ class QuietLog {
 };
 
 }  // namespace
+
+LeastGrowth least_growth(const Lens& lens, double to_rad) {
+  LeastGrowth least;
+  for (int i = 1; i <= kWalls; ++i) {
+    const double theta = to_rad * i / kWalls;
+    double slope = 1, power = 1;
+    for (std::size_t k = 0; k < 4; ++k) {
+      power *= theta * theta;
+      slope += static_cast<double>(2 * k + 3) * power * lens.k[k];
+    }
+    if (slope < least.slope) least = {theta, slope};
+  }
+  return least;
+}
 
 double largest_theta_rad(const std::vector<PosedView>& views) {
   double largest = 0;
@@ -217,8 +232,7 @@ double adjust(Lens& lens, std::vector<PosedView>& views, const AdjustmentOptions
                              numbers.data(), poses[i].data(), target.change_mm.data());
   if (!shape) problem.SetParameterBlockConstant(target.change_mm.data());
   const double field = largest_theta_rad(views);
-  constexpr int kWalls = 48;
-  for (int i = 1; i <= kWalls && options.freedom.coefficients > 0; ++i)
+  for (int i = 1; options.walls && i <= kWalls && options.freedom.coefficients > 0; ++i)
     problem.AddResidualBlock(new SlopeCost(field * i / kWalls), nullptr, numbers.data());
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_SCHUR;

@@ -32,10 +32,13 @@ struct AdjustmentOptions {
   double cauchy_px = std::numeric_limits<double>::infinity();
   int iterations = 50;
   double tolerance = 1e-10;  // smallest relative change of the sum that is worth another iteration
+  bool walls = true;         // keep θd increasing over the angles that the points use
 };
 
-// Bundle adjustment: the lens and all poses that make Σ loss(|projection − pixel|²) smallest, with θd kept
-// increasing over the angles that the points use. Returns Σ |projection − pixel|² (not the loss), or NaN
+// The least slope of θd that the walls allow: a fiftieth of the centre's, well above what check(Lens) refuses.
+inline constexpr double kLeastSlope = 0.02;
+
+// Bundle adjustment: the lens and all poses that make Σ loss(|projection − pixel|²) smallest. Returns Σ |projection − pixel|² (not the loss), or NaN
 // where the solver finds no number. shape: solved for too where given; points stay those of the square board.
 double adjust(Lens& lens, std::vector<PosedView>& views, const AdjustmentOptions& options,
               TargetShape* shape = nullptr);
@@ -47,6 +50,13 @@ std::optional<Eigen::Matrix<double, 8, 8>> lens_covariance(const Lens& lens,
                                                            const std::vector<PosedView>& views,
                                                            const LensFreedom& freedom, double noise_px,
                                                            const TargetShape* shape = nullptr);
+
+// The angle up to `to_rad` where θd grows least, and its slope there.
+struct LeastGrowth {
+  double theta_rad = 0;
+  double slope = 1;
+};
+LeastGrowth least_growth(const Lens& lens, double to_rad);
 
 // Largest angle off axis of the views' points, radians.
 double largest_theta_rad(const std::vector<PosedView>& views);

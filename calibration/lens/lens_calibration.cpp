@@ -9,6 +9,7 @@
 
 #include "calibration/lens/lens_selection.h"
 #include "calibration/lens/lens_start.h"
+#include "calibration/lens/repeated_views.h"
 #include "calibration/lens/view_geometry.h"
 
 namespace lightwell::calibration {
@@ -212,6 +213,35 @@ Error no_start(const Solution& s) {
                                     ": is the board's size right, are the points in its order?"};
 }
 
+Eigen::Matrix<double, 8, 1> change_of(const Lens& from, const Lens& to) {
+  Eigen::Matrix<double, 8, 1> d;
+  d << to.focal - from.focal, to.center - from.center, 0, 0, 0, 0;
+  for (std::size_t i = 0; i < 4; ++i) d[static_cast<Eigen::Index>(4 + i)] = to.k[i] - from.k[i];
+  return d;
+}
+
+// Where the lens leans on the wall that keeps its projection growing: that, with the shift which the wall caused taken
+// into the covariance. The part that the data alone would leave stays as it is: the wall may be right or wrong.
+void account_for_walls(LensCalibration& c, std::vector<PosedView> views) {
+  constexpr double kNear = 0.001;     // the walls give a little
+  constexpr double kNoShift = 0.001;  // standard deviations
+  const LeastGrowth least = least_growth(c.lens, c.lens.max_theta_rad);
+  if (!(least.slope < kLeastSlope + kNear)) return;
+  Lens lens = c.lens;
+  AdjustmentOptions options{c.freedom, kSquares, 100};
+  options.walls = false;
+  if (!(adjust(lens, views, options) >= 0)) return;
+  const Eigen::Matrix<double, 8, 1> shift = change_of(c.lens, lens);
+  LensConstraint constraint{least.theta_rad, 0};
+  for (Eigen::Index i = 0; i < 8; ++i)
+    if (c.covariance(i, i) > 0)
+      constraint.shift_sigma =
+          std::max(constraint.shift_sigma, std::abs(shift[i]) / std::sqrt(c.covariance(i, i)));
+  if (!(constraint.shift_sigma > kNoShift)) return;
+  c.covariance += shift * shift.transpose();
+  c.constraint = constraint;
+}
+
 // Final values on the points that count, with the freedom the data support.
 Result<LensCalibration> concluded(Solution& s, const std::optional<TargetShape>& shape) {
   std::vector<PosedView> views = posed(s.judged, true);
@@ -241,7 +271,8 @@ Result<LensCalibration> concluded(Solution& s, const std::optional<TargetShape>&
   out.freedom = selection.freedom;
   out.held_out_rms_px = out.freedom.coefficients == selected ? selection.held_out_rms_px
                                                              : held_out_rms_px(out.lens, views, out.freedom);
-  out.covariance = *covariance;
+  out.covariance = out.unshifted_covariance = *covariance;
+  account_for_walls(out, views);
   take_poses(s.judged, views);
   constexpr double kLargestFocalError = 0.05;
   const double focal_error = std::sqrt(out.covariance(0, 0)) / out.lens.focal.x();
@@ -285,6 +316,26 @@ ViewResult result_of(const Lens& lens, const Judged& j, double gate_px) {
   return out;
 }
 
+// Repeats among the views that count; a view that does not weighs nothing.
+void mark_repeats(LensCalibration& c, const TargetViews& target_views) {
+  std::vector<TargetView> used;
+  std::vector<std::size_t> index;
+  for (std::size_t v = 0; v < c.views.size(); ++v)
+    if (c.views[v].used) {
+      TargetView good{c.views[v].name, {}};
+      for (std::size_t i = 0, r = 0; i < target_views.views[v].points.size(); ++i)
+        if (r < c.views[v].rejected.size() && c.views[v].rejected[r] == i)
+          ++r;
+        else
+          good.points.push_back(target_views.views[v].points[i]);
+      used.push_back(std::move(good));
+      index.push_back(v);
+    }
+  const auto repeats = repeated_views(used, c.noise_px);
+  for (std::size_t i = 0; i < repeats.size(); ++i)
+    if (repeats[i]) c.views[index[i]].repeats = index[*repeats[i]];
+}
+
 }  // namespace
 
 Result<LensCalibration> calibrate_lens(const TargetViews& target_views, TargetTrust trust) {
@@ -326,6 +377,7 @@ Result<LensCalibration> calibrate_lens(const TargetViews& target_views, TargetTr
     const Judged few{&view, {}, false, std::vector<bool>(view.points.size(), false)};
     out->views.push_back(result_of(out->lens, known ? s.judged[next++] : few, kGate * s.noise_px));
   }
+  mark_repeats(*out, target_views);
   return out;
 }
 

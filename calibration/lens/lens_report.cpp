@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "calibration/lens/field_coverage.h"
+#include "calibration/lens/lens_selection.h"
 #include "calibration/lens/lens_uncertainty.h"
 #include "interface/lens_json.h"
 
@@ -28,7 +29,7 @@ std::string tenths(double degrees) {
   return text;
 }
 
-ordered_json view_json(const ViewResult& result, const TargetView& view) {
+ordered_json view_json(const LensCalibration& calibration, const ViewResult& result, const TargetView& view) {
   ordered_json out = {
       {"name", result.name},
       {"used", result.used},
@@ -36,6 +37,7 @@ ordered_json view_json(const ViewResult& result, const TargetView& view) {
       {"rms_px", result.residuals_px.empty() ? ordered_json(nullptr) : ordered_json(result.rms_px)},
       {"rejected", result.rejected},
       {"reason", result.reason}};
+  if (result.repeats) out["repeats"] = calibration.views[*result.repeats].name;
   ordered_json arrows = ordered_json::array();
   for (std::size_t i = 0; i < result.residuals_px.size(); ++i) {
     // Thousandths of a pixel are finer than can be seen.
@@ -106,7 +108,12 @@ ordered_json lens_report(const LensCalibration& calibration, const TargetViews& 
   out["held_out_rms_px"] = number_or_null(calibration.held_out_rms_px);
   out["noise_px"] = calibration.noise_px;
   out["coefficients"] = calibration.freedom.coefficients;
+  out["coefficients_rule"] = kCoefficientsRule;
   out["aspect_free"] = calibration.freedom.aspect;
+  if (const auto& held = calibration.constraint)
+    out["constrained"] = {{"theta_deg", held->theta_rad * kDegreesPerRadian},
+                          {"least_slope", kLeastSlope},
+                          {"shift_sigma", held->shift_sigma}};
   out["projection_uncertainty"] = uncertainty_json(calibration);
   out["target"] = calibration.trust == TargetTrust::exact ? "exact" : "printed";
   if (calibration.shape) out["board_shape_mm"] = shape_json(*calibration.shape);
@@ -117,8 +124,26 @@ ordered_json lens_report(const LensCalibration& calibration, const TargetViews& 
                      {"points", coverage.points}};
   ordered_json views = ordered_json::array();
   for (std::size_t i = 0; i < calibration.views.size(); ++i)
-    views.push_back(view_json(calibration.views[i], target_views.views[i]));
+    views.push_back(view_json(calibration, calibration.views[i], target_views.views[i]));
   out["views"] = std::move(views);
+  return out;
+}
+
+std::vector<std::string> lens_warnings(const LensCalibration& calibration) {
+  std::vector<std::string> out;
+  if (const auto& held = calibration.constraint) {
+    char text[240];
+    std::snprintf(
+        text, sizeof text,
+        "the points would have the projection stop growing at %.1f degrees off axis, where it is held; the "
+        "uncertainty has that shift, of %.1f standard deviations, in it",
+        held->theta_rad * kDegreesPerRadian, held->shift_sigma);
+    out.emplace_back(text);
+  }
+  for (const ViewResult& view : calibration.views)
+    if (view.repeats)
+      out.push_back(view.name + " shows the board where " + calibration.views[*view.repeats].name +
+                    " does, within the noise: they count as two, so the lens is less sure than it says");
   return out;
 }
 

@@ -12,7 +12,7 @@ namespace lightwell::calibration {
 // How much of the model the data support.
 struct LensSelection {
   LensFreedom freedom;
-  // √mean(du² + dv²) of views that were not fitted to, their poses alone. The coefficients were chosen by this number.
+  // √mean(du² + dv²) of views that were not fitted to, their poses alone.
   double held_out_rms_px = 0;
 };
 
@@ -22,10 +22,16 @@ struct LensSelection {
 std::optional<TargetShape> supported_shape(const Lens& lens, const std::vector<PosedView>& views,
                                            const TargetShape& square);
 
+// In words, for those who read lens.json.
+inline constexpr const char* kCoefficientsRule =
+    "four, and fewer as long as that lowers the error on views held out by more than 1 %; of points exact to "
+    "0.0001 px the "
+    "fewest that explain them";
+
 // Aspect by the corrected Akaike criterion (Hurvich and Tsai 1989). Coefficients by cross-validation in at most
-// five parts by views: dropped from the highest as long as the held-out error falls by more than
-// 1 %. Not the fewest: a coefficient
-// wrongly held at 0 biases the others by more than their standard deviation, one wrongly freed does not.
+// five parts by views: dropped from the highest as long as the held-out error falls by more than 1 %. Not the fewest that
+// a criterion of evidence asks for: docs/decisions/015-lens-coefficients.md. Computed points, which have no noise, have no
+// more than the fewest that explain them (0 to 4).
 // lens, views: solved with everything free.
 LensSelection select_freedom(const Lens& lens, const std::vector<PosedView>& views);
 

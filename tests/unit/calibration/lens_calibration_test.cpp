@@ -92,6 +92,65 @@ TEST(LensCalibration, ExactPointsGiveTheExactLens) {
   }
 }
 
+TEST(LensCalibration, ExactPointsGiveNoMoreCoefficientsThanTheLensHas) {
+  const std::array<double, 4> all = {-0.03, 0.004, -0.001, 0.0002};
+  for (std::size_t count = 0; count <= 4; ++count) {
+    std::array<double, 4> k{};
+    std::copy_n(all.begin(), count, k.begin());
+    const Lens lens = lens_of(180, 150, k);
+    test::BoardSetup setup = setup_of(lens);
+    setup.noise_px = 0;
+    setup.views = 12;
+    const auto found = calibrate_lens(test::board_views(lens, setup).target_views);
+    ASSERT_TRUE(found.ok()) << count << ": " << found.error().message;
+    EXPECT_EQ(found->freedom.coefficients, static_cast<int>(count));
+    // What is 0 is held there, and says so.
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_EQ(found->lens.k[i] == 0, i >= count);
+      EXPECT_EQ(found->covariance(static_cast<Eigen::Index>(4 + i), static_cast<Eigen::Index>(4 + i)) == 0,
+                i >= count);
+    }
+  }
+}
+
+// A board photographed twice from a tripod, one file copied and read again, and one moved by a few pixels.
+TEST(LensCalibration, APoseThatIsThereTwiceIsNamed) {
+  const Lens lens = lens_of(180, 150, {-0.02, 0.004, -0.001, 0.0001});
+  test::BoardSetup setup = setup_of(lens);
+  setup.noise_px = 0;
+  setup.views = 12;
+  auto views = test::board_views(lens, setup).target_views;
+  TargetView again = views.views[3], moved = views.views[5];
+  again.name = "again";
+  moved.name = "moved";
+  for (auto& p : moved.points) p.pixel.x() += 1;
+  views.views.push_back(again);
+  views.views.push_back(moved);
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0, 0.1);
+  for (auto& view : views.views)
+    for (auto& p : view.points) p.pixel += Vec2d(noise(random), noise(random));
+  TargetView copy = views.views[7];
+  copy.name = "copy";
+  views.views.push_back(copy);
+  const auto found = calibrate_lens(views);
+  ASSERT_TRUE(found.ok()) << found.error().message;
+  for (std::size_t v = 0; v < found->views.size(); ++v) {
+    const auto& repeats = found->views[v].repeats;
+    const std::string& name = found->views[v].name;
+    if (name == "again")
+      EXPECT_EQ(repeats, 3U);
+    else if (name == "copy")
+      EXPECT_EQ(repeats, 7U);
+    else
+      EXPECT_FALSE(repeats) << name;
+  }
+  const auto warnings = lens_warnings(*found);
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_THAT(warnings[0], HasSubstr("again shows the board where view 3 does"));
+  EXPECT_EQ(lens_report(*found, views)["views"][12]["repeats"], "view 3");
+}
+
 TEST(LensCalibration, LeavesOutTheWrongPointsAndNoOthers) {
   const Lens lens = lens_of(200, 300, {-0.05, 0.0013, -0.0028, 0.00025});
   test::BoardSetup setup = setup_of(lens);
