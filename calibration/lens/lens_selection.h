@@ -30,7 +30,7 @@ inline constexpr const char* kCoefficientsRule =
 
 // Aspect by the corrected Akaike criterion (Hurvich and Tsai 1989). Coefficients by cross-validation in at most
 // five parts by views: dropped from the highest as long as the held-out error falls by more than 1 %. Not the fewest that
-// a criterion of evidence asks for: docs/decisions/015-lens-coefficients.md. Computed points, which have no noise, have no
+// a criterion of evidence asks for: docs/decisions/026-lens-coefficients.md. Computed points, which have no noise, have no
 // more than the fewest that explain them (0 to 4).
 // lens, views: solved with everything free.
 LensSelection select_freedom(const Lens& lens, const std::vector<PosedView>& views);
