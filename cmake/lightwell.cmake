@@ -13,6 +13,7 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
 
 option(LIGHTWELL_BUILD_TESTS "Build the tests" ON)
+option(LIGHTWELL_FUZZ "Build the fuzz targets; needs Clang" OFF)
 set(LIGHTWELL_SANITIZE "" CACHE STRING "Comma-separated sanitizers, for example address,undefined")
 set(LIGHTWELL_TEST_DATA "${CMAKE_SOURCE_DIR}/../shared/data" CACHE PATH
     "Real maps and photographs for tests; tests that need them skip visibly where the folder is absent")

@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+// make_seeds FOLDER: what the project itself writes and what its tests import, as first inputs: FOLDER/TARGET/file.
+#include <cstdio>
+#include <filesystem>
+
+#include "calibration/lens/correspondences.h"
+#include "interface/atomic_file.h"
+#include "interface/calibration_io.h"
+#include "interface/recording.h"
+
+using namespace lightwell;
+
+namespace {
+
+void write(const std::filesystem::path& file, const std::string& text) {
+  std::filesystem::create_directories(file.parent_path());
+  const Status written = write_file_atomically(file, text);
+  verify_bug(written.ok(), "cannot write a seed");
+}
+
+Calibration calibration_of(const ResponseModel& model) {
+  Calibration c;
+  c.response.model = model;
+  c.response.clip_code = 4000;
+  c.response.reference_exposure_us = 1000;
+  c.lens.image_size = {8, 6};
+  c.lens.focal = {3, 3};
+  c.lens.center = {3.5, 2.5};
+  c.lens.k = {-0.01, 0.001, 0, 0};
+  c.lens.max_theta_rad = 1.5;
+  c.lens.zenith = Vec3d(0.1, -0.2, 0.9).normalized();
+  c.flat.image_size = c.lens.image_size;
+  c.flat.vignetting = {-0.1, 0.01, 0};
+  c.flat.offset_codes.assign(48, 1.5F);
+  c.flat.gain.assign(48, 1.01F);
+  c.rec709_from_camera << 1.5, -0.3, -0.2, -0.1, 1.2, -0.1, 0, -0.4, 1.4;
+  return c;
+}
+
+void calibration_files(const std::filesystem::path& folder) {
+  const ResponseModel models[] = {LogResponse{64, 208, 0.1}, LinearResponse{12, 0.25},
+                                  LinLogResponse{64, 30, 20},
+                                  PiecewiseLinearResponse{{{0, 60}, {12, 1084}, {95, 2108}, {24000, 4000}}}};
+  for (std::size_t i = 0; i < std::size(models); ++i) {
+    const Calibration c = calibration_of(models[i]);
+    const auto own = folder / ("folder" + std::to_string(i));
+    const Status written = write_calibration(own, c);
+    verify_bug(written.ok(), "a seed's calibration is refused");
+    for (const char* name : {"lens.json", "response.json", "flat.json"})
+      std::filesystem::rename(own / name, folder / (std::to_string(i) + name));
+    std::filesystem::remove(own);
+    write(folder / (std::to_string(i) + "attachment.json"), calibration_to_json(c));
+  }
+}
+
+void corners(const std::filesystem::path& folder) {
+  calibration::TargetViews views;
+  views.image_size = {640, 480};
+  for (int v = 0; v < 2; ++v) {
+    calibration::TargetView view{"view " + std::to_string(v), {}};
+    for (int i = 0; i < 4; ++i)
+      view.points.push_back({Vec3d(30 * i, 30 * v, 0), Vec2d(100 + 40 * i, 90 + v)});
+    views.views.push_back(view);
+  }
+  write(folder / "corners.json", calibration::to_json(views));
+}
+
+void patches(const std::filesystem::path& folder) {
+  write(folder / "patches.csv",
+        "name,luminance_cd_m2,code,code_sigma,use,channel,exposure_us\n\"a, "
+        "\"\"b\"\"\",0.1,400,0.5,fit,R,1000\n"
+        "c,1.6,900,0.5,fit,R,1000\nd,25,1400,,fit,R,1000\ne,400,2000,0.5,fit,R,1000\nf,6300,2600,0.5,check,R,"
+        "1000\n");
+  write(folder / "positions.csv", "\xef\xbb\xbfpatch,x,y,w,h\r\n1,10,20,30,40\r\n2,60,20,30,40\r\n");
+  write(folder / "chart.csv",
+        "name,camera_r,camera_g,camera_b,rec709_r,rec709_g,rec709_b\nwhite,50,100,80,100,100,100\n"
+        "red,20,5,2,40,5,2.5\ngreen,4,40,10,8,40,12.5\nblue,3,10,32,6,10,40\n");
+  write(folder / "codes.csv", "code_r,code_g,code_b,X,Y,Z,use\n500,1000,800,95,100,108,fit\n");
+}
+
+void imports(const std::filesystem::path& folder) {
+  write(folder / "lens_import_opencv/a.yaml",
+        "%YAML:1.0\n---\nimage_width: 848\nimage_height: 800\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   "
+        "cols: 3\n"
+        "   dt: d\n   data: [ 285.5, 0., 421.25, 0., 286.5, 398.75, 0., 0., 1. ]\n"
+        "distortion_coefficients: !!opencv-matrix\n   rows: 4\n   cols: 1\n   dt: d\n"
+        "   data: [ -0.0031, 0.0412, -0.0384, 0.0067 ]\n");
+  write(folder / "lens_import_opencv/b.xml",
+        "<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_size>848 800</image_size>\n"
+        "<K type_id=\"opencv-matrix\"><rows>3</rows><cols>3</cols><dt>d</dt>\n"
+        "<data>285.5 0. 421.25 0. 286.5 398.75 0. 0. 1.</data></K>\n"
+        "<D><!-- k "
+        "--><_>-0.0031</_><_>0.0412</_><_>-0.0384</_><_>0.0067</_></D>\n<xi>1.2</xi>\n</opencv_storage>\n");
+  write(folder / "lens_import_opencv/c.json",
+        R"({"K": [[285.5, 0.0, 421.25], [0.0, 286.5, 398.75], [0.0, 0.0, 1.0]],
+            "D": [[-0.0031], [0.0412], [-0.0384], [0.0067]], "DIM": [848, 800], "model": "fisheye"})");
+  const char* models[][4] = {{"pinhole", "400, 401, 320, 240", "radtan", "-0.2, 0.05, 0.001, -0.001"},
+                             {"pinhole", "400, 401, 320, 240", "equidistant", "-0.01, 0.05, 0.001, -0.001"},
+                             {"pinhole", "300, 301, 320, 240", "fov", "0.9"},
+                             {"omni", "1.4, 500, 501, 320, 240", "radtan", "-0.1, 0.02, 0.001, -0.001"},
+                             {"eucm", "0.6, 1.1, 200, 201, 320, 240", "none", ""},
+                             {"ds", "-0.17, 0.59, 158, 158, 320, 240", "none", ""}};
+  int n = 0;
+  for (const auto& [model, intrinsics, distortion, numbers] : models)
+    write(folder / "lens_import_kalibr" / (std::to_string(n++) + ".yaml"),
+          std::string("cam0:\n  camera_model: ") + model + "\n  intrinsics: [" + intrinsics +
+              "]\n  distortion_model: " + distortion + "\n  distortion_coeffs: [" + numbers +
+              "]\n  resolution: [640, 480]\n");
+  write(folder / "lens_import_ocamcalib/calib_results.txt",
+        "#polynomial\n\n5 -4.714441e+02 0 7.356108e-04 -3.773045e-07 5.800006e-10\n\n"
+        "3 772.405470 504.754051 7.034666\n\n794.308657 798.175741\n\n1.000305 -0.000277 -0.000925\n\n1600 "
+        "1500\n");
+  const std::string begin = "# a comment\n{ 'lensmodel': 'LENSMODEL_",
+                    end =
+                        " 'imagersize': [ 1000, 800,], 'x': b'ab'\n b'c',\n"
+                        " 'valid_intrinsics_region': [ [0, 0], [0, 799], [999, 799], [0, 0], ], }\n";
+  write(folder / "lens_import_mrcal/a.cameramodel",
+        begin + "STEREOGRAPHIC',\n 'intrinsics': [ 600, 601, 500, 400, ],\n" + end);
+  write(folder / "lens_import_mrcal/b.cameramodel",
+        begin + "CAHVOR',\n 'intrinsics': [ 600, 601, 500, 400, 0.02, -0.03, 0.01, 0.05, -0.02 ],\n" + end);
+  write(folder / "lens_import_mrcal/c.cameramodel",
+        begin + "OPENCV8',\n 'intrinsics': [ 600, 601, 500, 400, 0.1, 0, 0, 0, 0, 0.1, 0, 0 ],\n" + end);
+  std::string control;
+  for (int i = 0; i < 40; ++i) control += "0.01, ";
+  write(folder / "lens_import_mrcal/d.cameramodel",
+        begin +
+            "SPLINED_STEREOGRAPHIC_order=2_Nx=5_Ny=4_fov_x_deg=170',\n 'intrinsics': [ 600, 601, 500, 400, " +
+            control + "],\n" + end);
+}
+
+void radiance(const std::filesystem::path& folder) {
+  const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\nCOLORCORR=1 1 2\n";
+  write(folder / "flat.hdr", head + "\n-Y 2 +X 2\n" + std::string(16, '\x80'));
+  std::string row = {2, 2, 0, 8};
+  for (int plane = 0; plane < 4; ++plane) row += std::string{'\x84', '\x40', 4, 1, 2, 3, 4};
+  write(folder / "runs.hdr",
+        head + "PRIMARIES=0.64 0.33 0.3 0.6 0.15 0.06 0.3127 0.329\n\n-Y 1 +X 8\n" + row);
+}
+
+void takes(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const RecordingCodec codec : {RecordingCodec::raw, RecordingCodec::ffv1})
+    for (const PixelFormat pixels : {PixelFormat::mono8, PixelFormat::mono12p}) {
+      RecordingHeader header;
+      header.format = {8, 6, pixels};
+      header.codec = codec;
+      header.rate_hz = 30;
+      header.source = "seed";
+      header.calibration_json = R"({"schema":"lightwell.calibration/1"})";
+      const auto file =
+          folder / (std::string(name(codec)) + std::to_string(significant_bits(pixels)) + ".mkv");
+      std::filesystem::remove(file);
+      auto writer = RecordingWriter::create(file, header);
+      verify_bug(writer.ok(), "cannot write a take");
+      for (int i = 0; i < 2; ++i) {
+        RecordedFrame frame;
+        frame.sequence = static_cast<std::uint64_t>(i);
+        frame.capture_mono_ns = frame.received_mono_ns = frame.capture_utc_ns = 33'000'000 * (i + 1);
+        frame.exposure_us = 1000;
+        const std::vector<std::byte> codes(header.format.bytes(), std::byte{7});
+        const Status written = (*writer)->write(frame, codes);
+        verify_bug(written.ok(), "cannot write a frame");
+      }
+      const Status closed = (*writer)->close();
+      verify_bug(closed.ok(), "cannot close a take");
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "make_seeds FOLDER\n");
+    return 2;
+  }
+  const std::filesystem::path folder = argv[1];
+  std::filesystem::create_directories(folder / "calibration_files");
+  calibration_files(folder / "calibration_files");
+  corners(folder / "corners");
+  patches(folder / "patches");
+  imports(folder);
+  radiance(folder / "radiance_hdr");
+  takes(folder / "recording");
+  return 0;
+}
