@@ -231,8 +231,8 @@ TEST_F(CalibrationPage, SaysUpToWhereTheLensIsHeldAndHowUncertainItIsThereAndBey
 }
 
 TEST_F(CalibrationPage, PointsThatDoNotCountDoNotSetTheScaleOfTheArrows) {
-  // The median of 0.5 px is drawn 0.012 of 640 px long: 15.36 times.
-  EXPECT_THAT(lens_page(a_lens()), HasSubstr("15 times enlarged"));
+  // The median of 0.5 px is drawn 0.02 of 640 px long.
+  EXPECT_THAT(lens_page(a_lens()), HasSubstr("25.6 times as long"));
 }
 
 }  // namespace
