@@ -98,6 +98,20 @@ void print(const calibration::FlatFit& fit, const Lens& lens) {
   if (fit.masked_pixels > 0) std::printf(", %zu pixels of lamps or dust left out", fit.masked_pixels);
   if (const auto& c = fit.takes[0].mean.temperature_c) std::printf(", %.1f degrees C", *c);
   std::printf("\n");
+  if (!turned)
+    std::printf(
+        "             what darkens toward the scene's own edge, as skies do, is taken for vignetting\n");
+}
+
+// Light that changed between the takes, or angles other than stated, pass for vignetting.
+void warn_of_disagreement(const calibration::FlatFit& fit) {
+  constexpr double kMost = 0.03;
+  if (!fit.turned_deg.empty() && fit.scene_scatter > kMost)
+    std::fprintf(stderr,
+                 "lightwell: the takes disagree on the scene by %.1f %%, good is up to %.0f %%: did the "
+                 "light change, or "
+                 "are the angles of --turning other than stated? The vignetting is not to be trusted\n",
+                 100 * fit.scene_scatter, 100 * kMost);
 }
 
 // Fixed patterns go with temperature.
@@ -121,6 +135,7 @@ int run(const Options& o) {
   if (!flat) return fail(flat.error());
   if (const Status status = write_file_atomically(o.out, calibration::flat_file(*flat)); !status)
     return fail(status.error());
+  warn_of_disagreement(*flat);
   warn_of_temperature(*flat);
   if (o.json)
     std::printf("%s\n", calibration::report_to_json(*flat)
@@ -141,8 +156,7 @@ Command add_calibrate_flat(CLI::App& group) {
       "Example: lightwell calibrate flat even.mkv --lens lens.json --response response.json --out flat.json");
   command
       ->add_option("RECORDINGS", options->recordings,
-                   "Take of an even scene: a diffuser before the lens, overcast sky; several, of different "
-                   "brightness, "
+                   "Take of an even scene, a diffuser before the lens; several, of different brightness, "
                    "tell gains from offsets")
       ->required();
   command->add_option("--lens", options->lens, "lens.json")->required()->type_name("FILE");

@@ -247,6 +247,16 @@ Status fit_lens(const SourceLens& source, const Vec2d& axis, const std::vector<S
 Result<LensConversion> convert_lens(const SourceLens& source, std::optional<double> max_theta_rad) {
   const auto axis = source.project({0, 0, 1});
   if (!axis || !axis->allFinite()) return Error{ErrorKind::bad_input, "the model does not see its own axis"};
+  const auto& [width, height] = source.image_size;
+  if (axis->x() < 0 || axis->y() < 0 || axis->x() > width - 1 || axis->y() > height - 1) {
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        "the centre (%.1f, %.1f) lies outside the image of %dx%d pixels: was the lens calibrated at another "
+        "size?",
+        axis->x(), axis->y(), width, height);
+    return Error{ErrorKind::bad_input, text};
+  }
   std::vector<Reach> reach;
   for (int sector = 0; sector < kSectors; ++sector) reach.push_back(reach_along(source, *axis, sector));
   const auto field = field_of(reach, max_theta_rad);

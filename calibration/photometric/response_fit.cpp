@@ -300,8 +300,10 @@ PatchResidual residual_of(const ResponseFit& fit, const Patch& patch, double cod
     out.relative_error = ratio - 1;
     out.stops = std::log2(ratio);
     const double of_code = sigma_code * response.dluminance_dcode(patch.code) / out.luminance_cd_m2;
-    const double sigma = std::hypot(fit.relative_sigma(patch.code),
-                                    fit.noise_scale * std::hypot(of_code, fit.luminance_error));
+    const double of_fit = fit.relative_sigma(patch.code);
+    const double of_patch = fit.noise_scale * std::hypot(of_code, fit.luminance_error);
+    const double sigma = std::hypot(of_fit, of_patch);
+    out.leverage = std::min(1.0, of_fit * of_fit / (of_patch * of_patch));
     // In the logarithm, as relative errors are; where the light is no more than its error, down to 0.
     const double wide = fit.t95 * sigma;
     out.interval = {wide < 1 ? out.luminance_cd_m2 * std::exp(-wide) : 0,
@@ -378,7 +380,10 @@ Result<ResponseFit> fit_response(const PatchSet& given, const ResponseFitOptions
     fit.fit.push_back(residual_of(fit, patches->fit[i], options.code_sigma));
     fit.fit.back().rejected = chosen->rejected == i;
   }
-  for (const Patch& patch : patches->check) fit.check.push_back(residual_of(fit, patch, options.code_sigma));
+  for (const Patch& patch : patches->check) {
+    fit.check.push_back(residual_of(fit, patch, options.code_sigma));
+    fit.check.back().leverage = std::numeric_limits<double>::quiet_NaN();
+  }
   fit.usable_codes = usable(fit);
   return fit;
 }

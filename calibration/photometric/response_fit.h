@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,6 +52,9 @@ struct PatchResidual {
   std::array<double, 2> interval = {0,
                                     0};  // 95 %, for the true luminance and a reading of it as good as stated
   bool inside = false;                   // the patch's luminance lies in the interval
+  // Of a patch that is fitted: the fit's variance at it over its own, up to 1. Near 1 the curve goes through it whatever
+  // it says: an error of its reading is seen by no residual. NaN in darkness, and of check patches.
+  double leverage = std::numeric_limits<double>::quiet_NaN();
 };
 
 // The fitted response with what is known of its error.
@@ -80,6 +84,8 @@ struct ResponseFit {
   [[nodiscard]] double relative_error_95(double code) const { return t95 * relative_sigma(code); }
 };
 inline constexpr double kUsableError = 0.05;
+// Of leverage, from where on the curve rests on the patch alone.
+inline constexpr double kAloneLeverage = 0.9;
 // Difference of AICc that leaves the other no support (Burnham and Anderson 2002).
 inline constexpr double kStrongAicc = 10;
 

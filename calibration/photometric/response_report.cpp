@@ -27,10 +27,12 @@ ordered_json json_of(const PatchResidual& r, bool check) {
                       {"stops", finite(r.stops)},
                       {"code_residual", finite(r.code_residual)},
                       {"interval_95_cd_m2", {r.interval[0], finite(r.interval[1])}}};
-  if (check)
+  if (check) {
     out["inside_95"] = r.inside;
-  else
+  } else {
     out["used"] = !r.rejected;
+    out["leverage"] = finite(r.leverage);
+  }
   return out;
 }
 
@@ -248,7 +250,10 @@ std::string summary(const ResponseReport& report) {
     else
       out += line("  measured %.3g, no ratio to darkness  %s\n", r.luminance_cd_m2, use);
   };
-  for (const PatchResidual& r : fit.fit) add(r, r.rejected ? "left out: it contradicts the others" : "");
+  for (const PatchResidual& r : fit.fit)
+    add(r, r.rejected                    ? "left out: it contradicts the others"
+           : r.leverage > kAloneLeverage ? "the curve here rests on it alone"
+                                         : "");
   for (const PatchResidual& r : fit.check)
     add(r, r.inside ? "check, inside its 95 % interval" : "check, OUTSIDE its 95 % interval");
   for (const ChannelGain& c : report.channels)

@@ -84,7 +84,8 @@ ReportSection flat_section(const FlatField& flat, double max_theta_rad, const js
       (sigma > 0 ? formatted(" ± %.1f", 100 * kSure * sigma) : std::string()) +
       " % of the light is left at the edge of the field, " + formatted("%.0f°", max_theta_rad * 180 / kPi) +
       " off axis" +
-      (fit.value("vignetting_from", std::string()) == "turning" ? ", found by turning the camera" : "") +
+      (fit.value("vignetting_from", std::string()) == "turning" ? ", found by turning the camera"
+                                                                : ", if the scene was as bright there") +
       "." + pattern_text(fit) + "</p>";
   if (is_number(fit, "scene_tilt") && fit.at("scene_tilt").get<double>() > kWorthSaying)
     out.warning = "the scene for the flat field changed by " +

@@ -19,6 +19,8 @@ void write(const std::filesystem::path& file, const std::string& text) {
   verify_bug(written.ok(), "cannot write a seed");
 }
 
+using ResponseModel = decltype(Response::model);
+
 Calibration calibration_of(const ResponseModel& model) {
   Calibration c;
   c.response.model = model;

@@ -318,6 +318,20 @@ TEST_F(LensImport, WithoutALimitTheFieldIsWhatTheImageShows) {
   EXPECT_GT(c.lens.max_theta_rad, corner - 0.05);  // azimuths are 5 degrees apart
 }
 
+TEST_F(LensImport, ACentreOutsideTheImageIsOfAnotherSizeAndRefused) {
+  const auto source =
+      read(replaced(kKalibr, "resolution: [848, 800]", "resolution: [424, 400]"), {{}, "cam0"});
+  ASSERT_TRUE(source.ok()) << source.error().message;
+  EXPECT_TRUE(convert_lens(*source, 1.0).ok());  // just inside
+  const auto smaller =
+      read(replaced(kKalibr, "resolution: [848, 800]", "resolution: [420, 400]"), {{}, "cam0"});
+  ASSERT_TRUE(smaller.ok()) << smaller.error().message;
+  const auto c = convert_lens(*smaller, 1.0);
+  ASSERT_FALSE(c.ok());
+  EXPECT_EQ(c.error().kind, ErrorKind::bad_input);
+  EXPECT_THAT(c.error().message, HasSubstr("(421.2, 398.8) lies outside the image of 420x400"));
+}
+
 TEST_F(LensImport, AFieldBeyondWhereTheProjectionGrowsIsRefusedWithTheLimit) {
   // 1 - 3 · 0.12 θ² = 0.001 at θ = 1.6658: 95.4 degrees.
   const auto source =

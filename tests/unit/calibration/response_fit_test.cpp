@@ -73,6 +73,21 @@ TEST(ResponseFit, ExactPatchesGiveTheExactResponse) {
   }
 }
 
+TEST(ResponseFit, APatchThatTheCurveRestsOnAloneIsTold) {
+  const auto fit = fit_response(patches_of(kLog, kSixDecades, 0.01), {});
+  ASSERT_TRUE(fit) << fit.error().message;
+  double sum = 0;
+  for (const PatchResidual& r : fit->fit) sum += r.leverage;
+  EXPECT_NEAR(sum, 3,
+              0.03);  // leverages sum to the number of parameters; they are taken at the patches' codes: 1 %
+  EXPECT_GT(fit->fit[0].leverage, kAloneLeverage);  // the toe is seen by the darkest patch only
+  for (std::size_t i = 1; i < 6; ++i) EXPECT_LT(fit->fit[i].leverage, kAloneLeverage);
+
+  const auto two = fit_response(patches_of(kLog, {0.1, 0.12, 1.6, 25, 400, 6300, 1e5}, 0.01), {});
+  ASSERT_TRUE(two) << two.error().message;
+  for (const PatchResidual& r : two->fit) EXPECT_LT(r.leverage, kAloneLeverage);
+}
+
 TEST(ResponseFit, SixPatchesOverSixDecadesWithOnePercentErrorGiveTwoPercent) {
   double sum = 0;
   int large = 0;
