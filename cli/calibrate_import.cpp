@@ -41,7 +41,9 @@ void print_text(const calibration::SourceLens& source, const calibration::LensCo
     std::printf("turned            by %.2f degrees against the file's camera frame\n",
                 c.turn.norm() * 180 / kPi);
   std::printf("field             to %.1f degrees off axis", c.lens.max_theta_rad * 180 / kPi);
-  if (o.max_theta_deg <= 0)
+  if (o.max_theta_deg <= 0 && c.lens.max_theta_rad >= increasing_to_rad(c.lens))
+    std::printf(", where its projection stops growing: the image goes on, but no lens is like that");
+  else if (o.max_theta_deg <= 0)
     std::printf(", the farthest that the image shows; --max-theta ends it at the lens's circle");
   if (c.lens.max_theta_rad > c.supported_theta_rad)
     std::printf(", extrapolated beyond %.1f, the farthest that the image shows",

@@ -70,8 +70,10 @@ void print_text(const Options& o, const calibration::RecordedIlluminance& measur
   std::printf("map %.6g lux, meter %.6g lux: error %+.2f %%, %+.3f stops (times %.6g would agree)\n",
               measured.lux, o.lux, 100 * (ratio - 1), std::log2(ratio), 1 / ratio);
   if (measured.clipped > 0)
-    std::printf("%llu pixels are clipped: there is more light than was measured\n",
-                static_cast<unsigned long long>(measured.clipped));
+    std::printf(
+        "%llu pixels are clipped, by lamps or as hot pixels: where it was light, there is more than was "
+        "measured\n",
+        static_cast<unsigned long long>(measured.clipped));
   if (measured.measured_part < 0.99)
     std::printf(o.environment.empty() ? "only %.1f %% of what the meter sees lies in the lens's field\n"
                                       : "only %.1f %% of what the meter sees is not black in the map\n",

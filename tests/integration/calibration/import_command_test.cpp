@@ -72,6 +72,15 @@ TEST_F(ImportCommand, WritesTheLensWithTheConversionsError) {
   EXPECT_THAT(text.out, HasSubstr("conversion        exact"));
 }
 
+TEST_F(ImportCommand, AProjectionThatStopsGrowingInsideTheImageIsSaidToEndTheField) {
+  // 1 − 0.6 θ² falls to the least slope, 0.001, at 73.9 degrees; the image goes on.
+  std::string folding = kCamera;
+  folding.replace(folding.find("-0.0031, 0.0412, -0.0384, 0.0067"), 32, "-0.2, 0, 0, 0");
+  const ProcessResult run = calibrate({"import", file("camchain.yaml", folding)});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("to 73.9 degrees off axis, where its projection stops growing"));
+}
+
 TEST_F(ImportCommand, AFieldBeyondTheImageIsExtrapolatedAndTheFileSaysFromWhere) {
   const std::string camera = file("camchain.yaml", kCamera);
   ASSERT_EQ(calibrate({"import", camera}).exit_code, 0);
