@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calibration/photometric/bracket_map.h"
+#include "calibration/photometric/bracket_merge.h"
 #include "calibration/photometric/brackets.h"
 #include "cli/command.h"
 #include "cli/progress.h"
@@ -21,7 +22,7 @@
 namespace lightwell::cli {
 namespace {
 
-constexpr int kShrink = 4;  // a mean of 16 pixels: less noise, and a ninth picture still fits into memory
+constexpr int kShrink = 4;  // squares of 16 pixels: less noise
 
 struct Options {
   std::vector<std::string> images;
@@ -101,15 +102,14 @@ Result<std::optional<calibration::BracketMap>> write(const Options& o,
   std::vector<std::pair<std::string, std::string>> files;
   std::optional<calibration::BracketMap> map;
   if (!o.radiance.empty() || !o.map.empty()) {
-    const RadiancePicture radiance = calibration::merge_brackets(photographs, fit.response);
+    const RadiancePicture radiance = calibration::merge_brackets(photographs, fit.response, kShrink);
     if (!o.radiance.empty()) {
       auto exr = exr_from_floats(radiance.width, radiance.height, "RGB", radiance.rgb, ExrContent::picture);
       if (!exr) return exr.error();
       files.emplace_back(o.radiance, *std::move(exr));
     }
     if (!o.map.empty()) {
-      auto made =
-          calibration::bracket_map(radiance, photographs.front().picture, kShrink, *optics.lens, optics.flat);
+      auto made = calibration::bracket_map(radiance, photographs.front(), kShrink, *optics.lens, optics.flat);
       if (!made) return made.error();
       map = *std::move(made);
       auto exr = environment_to_exr(lat_long_of_measured(map->map));

@@ -35,8 +35,7 @@ Result<std::string> encode_jpeg(int width, int height, std::span<const std::uint
   return std::string(reinterpret_cast<const char*>(data), size);
 }
 
-Result<JpegPicture> decode_jpeg(std::string_view bytes, const std::string& name, int shrink) {
-  verify_bug(shrink == 1 || shrink == 2 || shrink == 4 || shrink == 8, "JPEG shrunk by another factor");
+Result<JpegPicture> decode_jpeg(std::string_view bytes, const std::string& name) {
   constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
   const std::unique_ptr<void, Destroy> decoder(tjInitDecompress());
   if (!decoder) return Error{ErrorKind::failed, std::string("cannot read JPEG: ") + tjGetErrorStr2(nullptr)};
@@ -50,9 +49,8 @@ Result<JpegPicture> decode_jpeg(std::string_view bytes, const std::string& name,
   if (std::int64_t{width} * height > kMostPixels)
     return Error{ErrorKind::bad_input, name + ": " + std::to_string(width) + "x" + std::to_string(height) +
                                            " pixels: allowed 2^28"};
-  const tjscalingfactor factor{1, shrink};
-  JpegPicture picture{TJSCALED(width, factor), TJSCALED(height, factor), {}, width, height};
-  picture.rgb.resize(static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) * 3);
+  JpegPicture picture{width, height, {}};
+  picture.rgb.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
   constexpr int kTightRows = 0;
   if (tjDecompress2(decoder.get(), data, bytes.size(), picture.rgb.data(), picture.width, kTightRows,
                     picture.height, TJPF_RGB, TJFLAG_ACCURATEDCT) != 0)

@@ -19,11 +19,8 @@ struct JpegPicture {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> rgb;  // [height][width][3]
-  int full_width = 0;             // of the file, before it was shrunk
-  int full_height = 0;
 };
-// shrink: 1, 2, 4 or 8, each pixel the mean code of a square of so many. bad_input: not a JPEG, truncated, over 2^28
-// pixels.
-Result<JpegPicture> decode_jpeg(std::string_view bytes, const std::string& name_for_errors, int shrink = 1);
+// bad_input: not a JPEG, truncated, over 2^28 pixels.
+Result<JpegPicture> decode_jpeg(std::string_view bytes, const std::string& name_for_errors);
 
 }  // namespace lightwell

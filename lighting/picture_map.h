@@ -21,7 +21,7 @@ struct RadiancePicture {
 };
 
 // The lens of a picture of which each pixel is the mean of a square of factor × factor pixels. A size that the factor
-// does not divide is rounded up, as decode_jpeg does.
+// does not divide is rounded up: the last squares are cut.
 Lens shrunk(const Lens& lens, int factor);
 
 // A picture as a map of three channels over grid, turned upright by the lens's zenith. For pictures once in a while, not

@@ -12,7 +12,7 @@ std::string size_text(int width, int height) {
   return std::to_string(width) + "x" + std::to_string(height);
 }
 
-Status check_inputs(const JpegPicture& photograph, const Lens& lens, const FlatField& flat) {
+Status check_inputs(const Photograph& photograph, const Lens& lens, const FlatField& flat) {
   if (lens.image_size != std::array<int, 2>{photograph.full_width, photograph.full_height})
     return Error{ErrorKind::bad_input,
                  "lens.image_size = " + size_text(lens.image_size[0], lens.image_size[1]) +
@@ -28,7 +28,7 @@ Status check_inputs(const JpegPicture& photograph, const Lens& lens, const FlatF
 
 }  // namespace
 
-Result<BracketMap> bracket_map(const RadiancePicture& radiance, const JpegPicture& photograph, int shrink,
+Result<BracketMap> bracket_map(const RadiancePicture& radiance, const Photograph& photograph, int shrink,
                                const Lens& lens, const FlatField& flat) {
   if (const Status status = check_inputs(photograph, lens, flat); !status) return status.error();
   FlatField vignetting;

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "calibration/photometric/brackets.h"
+#include "calibration/photometric/photograph.h"
 #include "lighting/picture_map.h"
 
 // From the merged photographs of a fisheye to a radiance map that the rest of Lightwell reads.
@@ -16,10 +16,10 @@ struct BracketMap {
   double facing_lux = 0, upward_lux = 0;  // on a surface that faces what the lens faces, that is level
 };
 
-// radiance: the merged photographs; photograph: one of them, as it was read; shrink: by what.
+// radiance: the merged photographs; photograph: one of them, as it was read; shrink: by what merge_brackets shrank.
 // bad_input: the lens or the flat field is of pictures of another size; a flat field with offsets or gains of pixels,
 // which photographs, developed by their camera, cannot be corrected for.
-Result<BracketMap> bracket_map(const RadiancePicture& radiance, const JpegPicture& photograph, int shrink,
+Result<BracketMap> bracket_map(const RadiancePicture& radiance, const Photograph& photograph, int shrink,
                                const Lens& lens, const FlatField& flat);
 
 nlohmann::ordered_json to_json(const BracketMap& map);

@@ -8,20 +8,16 @@
 #include <numeric>
 #include <opencv2/photo.hpp>
 
+#include "calibration/photometric/bracket_merge.h"
 #include "interface/response_json.h"
 
 namespace lightwell::calibration {
 namespace {
 
-constexpr int kLow = 5, kHigh = 250;  // codes beyond are dark or clipped
-constexpr int kGrey = 118;            // sRGB of 18 % grey
+constexpr int kGrey = 118;  // sRGB of 18 % grey
 constexpr std::size_t kGreen = 1;
 
 using Curve3 = std::array<std::vector<double>, 3>;  // exposure of every code, 256
-
-std::size_t pixels_of(const Photograph& p) {
-  return static_cast<std::size_t>(p.picture.width) * static_cast<std::size_t>(p.picture.height);
-}
 
 // What the pixels of one code in one photograph have in another, in the middle: [photograph][code][other]; −1 where fewer
 // than kFewest pixels have that code. Medians of many pixels know no noise, and no edges or passers-by.
@@ -36,7 +32,9 @@ Comparison compare(const std::vector<const Photograph*>& photos, std::size_t cha
     for (std::size_t b = 0; b < n; ++b) {
       histogram.assign(256 * 256, 0);
       const auto &from = photos[a]->picture.rgb, &to = photos[b]->picture.rgb;
-      for (std::size_t i = channel; i < from.size(); i += 3) ++histogram[256 * std::size_t{from[i]} + to[i]];
+      for (std::size_t pixel = 0, i = channel; i < from.size(); ++pixel, i += 3)
+        if (photos[a]->uneven[pixel] == 0 && photos[b]->uneven[pixel] == 0)
+          ++histogram[256 * std::size_t{from[i]} + to[i]];
       for (std::size_t z = 0; z < 256; ++z) {
         const auto row = histogram.begin() + static_cast<std::ptrdiff_t>(256 * z);
         const std::uint32_t count = std::accumulate(row, row + 256, 0U);
@@ -141,7 +139,7 @@ Result<Curve3> solve(const std::vector<const Photograph*>& photos,
   for (std::size_t c = 0; c < 3; ++c) {
     out[c] = solve_channel(photos, comparisons[c], kept, solver);
     // Every camera's curve rises by a stop or more from mid grey to white.
-    const double rise = out[c].empty() ? 0 : out[c][kHigh];
+    const double rise = out[c].empty() ? 0 : out[c][kClippedCode];
     if (!(rise > 2) || !std::isfinite(out[c][255]))
       return Error{ErrorKind::bad_input,
                    photos[0]->file +
@@ -155,13 +153,13 @@ Result<Curve3> solve(const std::vector<const Photograph*>& photos,
 // Scaled so that L = level · x(code) at the reference exposure.
 Response as_response(const std::vector<double>& exposures, double level_cd_m2, double reference_s) {
   PiecewiseLinearResponse model;
-  for (int z = kLow; z <= kHigh; ++z)
+  for (int z = kDarkCode; z <= kClippedCode; ++z)
     model.points.push_back({level_cd_m2 * exposures[static_cast<std::size_t>(z)], static_cast<double>(z)});
   Response response;
   response.model = std::move(model);
   response.bits = 8;
-  response.black_code = kLow;
-  response.clip_code = kHigh;
+  response.black_code = kDarkCode;
+  response.clip_code = kClippedCode;
   response.reference_exposure_us = 1e6 * reference_s;
   return response;
 }
@@ -173,38 +171,37 @@ std::optional<double> median_of(std::vector<float>& values) {
   return static_cast<double>(*middle);
 }
 
-// Luminance of a pixel's channel: exposures weighted by their time (light collected) where the code is between the ends.
-double merged(const std::vector<const Photograph*>& photos, const std::vector<double>& luminance,
-              std::size_t at, double reference_s) {
-  double sum = 0, weight = 0;
-  for (const Photograph* p : photos) {
-    const int code = p->picture.rgb[at];
-    if (code <= kLow || code >= kHigh) continue;
-    sum += luminance[static_cast<std::size_t>(code)] * reference_s;  // · exposure / exposure
-    weight += p->exposure_s;
-  }
-  return weight > 0 ? sum / weight : 0;
-}
-
-std::vector<double> table_of(const Response& response) {
-  std::vector<double> table;
-  for (int z = 0; z < 256; ++z) table.push_back(std::max(0.0, response.luminance_cd_m2(z)));
-  return table;
-}
-
 double reference_of(const std::vector<const Photograph*>& photos) {
   return photos[photos.size() / 2]->exposure_s;
+}
+
+// One curve over the exposure times is one aperture and one ISO. of: of a photograph, where it is known.
+Status check_same(const std::vector<Photograph>& photos, const char* name,
+                  std::optional<double> Photograph::*of) {
+  constexpr double kSame = 0.01;  // fractions, as EXIF has them, may be rounded
+  const Photograph* first = nullptr;
+  for (const Photograph& p : photos) {
+    if (!(p.*of)) continue;
+    if (first == nullptr) first = &p;
+    if (std::abs(*(p.*of) - *(first->*of)) <= kSame * *(first->*of)) continue;
+    char text[100];
+    std::snprintf(text, sizeof text, ": %s = %g: allowed %g, that of ", name, *(p.*of), *(first->*of));
+    return Error{ErrorKind::bad_input, p.file + text + first->file};
+  }
+  return {};
 }
 
 Status check_set(const std::vector<Photograph>& photos) {
   const auto bad = [](const std::string& what) { return Error{ErrorKind::bad_input, what}; };
   if (const Status status = check_number_of_photographs(photos.size()); !status) return status;
   for (const Photograph& p : photos) {
-    if (p.picture.width != photos[0].picture.width || p.picture.height != photos[0].picture.height)
+    if (p.full_width != photos[0].full_width || p.full_height != photos[0].full_height)
       return bad(p.file + ": its size differs from that of " + photos[0].file + ": allowed one size");
     if (!(p.exposure_s > 0 && p.exposure_s < 1e5))
       return bad(p.file + ": exposure = " + std::to_string(p.exposure_s) + " s: allowed above 0, below 1e5");
   }
+  if (const Status status = check_same(photos, "f-number", &Photograph::f_number); !status) return status;
+  if (const Status status = check_same(photos, "ISO", &Photograph::iso); !status) return status;
   for (std::size_t i = 1; i < photos.size(); ++i)
     if (photos[i].exposure_s < 1.01 * photos[i - 1].exposure_s)
       return bad(photos[i].file + ": exposure " + std::to_string(photos[i].exposure_s) + " s is that of " +
@@ -230,14 +227,17 @@ Status foretell(const std::vector<const Photograph*>& all, const std::array<Comp
     if (held.empty()) continue;
     const auto curve = solve(all, comparisons, kept, solver);
     if (!curve) return curve.error();
-    const std::vector<double> luminance = table_of(as_response((*curve)[kGreen], 1, 1));
+    const std::vector<double> luminance = luminance_table(as_response((*curve)[kGreen], 1, 1));
     for (const std::size_t h : held) {
       const Photograph& p = *all[h];
       std::vector<float> own;
       for (std::size_t i = 0; i < p.picture.rgb.size(); ++i) {
         const int code = p.picture.rgb[i];
-        if (code <= kLow || code >= kHigh) continue;
-        const double foretold = merged(kept_photos, luminance, i, 1);
+        if (code <= kDarkCode || code >= kClippedCode || p.uneven[i / 3] != 0) continue;
+        MergedChannel others;
+        for (const Photograph* other : kept_photos)
+          if (other->uneven[i / 3] == 0) others.add(other->picture.rgb[i], luminance, other->exposure_s);
+        const double foretold = others.luminance_cd_m2(1);
         if (!(foretold > 0)) continue;
         const double seen = luminance[static_cast<std::size_t>(code)] / p.exposure_s;
         own.push_back(static_cast<float>(std::abs(foretold / seen - 1)));
@@ -300,32 +300,6 @@ void scale_luminance(BracketFit& fit, double scale) {
   fit.scale *= scale;
 }
 
-RadiancePicture merge_brackets(const std::vector<Photograph>& photographs, const Response& response) {
-  std::vector<const Photograph*> all;
-  for (const Photograph& p : photographs) all.push_back(&p);
-  const std::vector<double> luminance = table_of(response);
-  const double reference_s = response.reference_exposure_us * 1e-6;
-  const auto longest = *std::max_element(all.begin(), all.end(),
-                                         [](auto* a, auto* b) { return a->exposure_s < b->exposure_s; });
-  const auto shortest = *std::min_element(all.begin(), all.end(),
-                                          [](auto* a, auto* b) { return a->exposure_s < b->exposure_s; });
-  RadiancePicture out{photographs[0].picture.width, photographs[0].picture.height,
-                      std::vector<float>(3 * pixels_of(photographs[0])),
-                      std::vector<std::uint8_t>(pixels_of(photographs[0]), 0)};
-  for (std::size_t i = 0; i < out.rgb.size(); ++i) {
-    double value = merged(all, luminance, i, reference_s);
-    // Nowhere between the ends: clipped even in the shortest, dark even in the longest, or neither of both.
-    if (!(value > 0) && shortest->picture.rgb[i] >= kHigh) {
-      value = luminance[kHigh] * reference_s / shortest->exposure_s;
-      out.clipped[i / 3] = 1;
-    } else if (!(value > 0) && longest->picture.rgb[i] > 0) {
-      value = luminance[longest->picture.rgb[i]] * reference_s / longest->exposure_s;
-    }
-    out.rgb[i] = static_cast<float>(value);
-  }
-  return out;
-}
-
 std::string channel_warning(const BracketFit& fit) {
   constexpr double kMostSpread = 0.1;
   const double spread = std::max(fit.channel_spread[0], fit.channel_spread[2]);
@@ -344,15 +318,14 @@ nlohmann::ordered_json report_to_json(const BracketFit& fit) {
     return error ? nlohmann::ordered_json(*error) : nlohmann::ordered_json();
   };
   const auto& of = fit.channel_median_error;
-  nlohmann::ordered_json out = {
-      {"schema", "lightwell.bracket-fit/1"},
-      {"median_error", or_null(fit.median_error)},
-      {"channel_median_error", {or_null(of[0]), or_null(of[1]), or_null(of[2])}},
-      {"error_of", "all channels by green's curve, photographs at a quarter of their size"},
-      {"absolute", fit.absolute},
-      {"scale", fit.scale},
-      {"channel_spread", fit.channel_spread},
-      {"predictions", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json out = {{"schema", "lightwell.bracket-fit/1"},
+                                {"median_error", or_null(fit.median_error)},
+                                {"channel_median_error", {or_null(of[0]), or_null(of[1]), or_null(of[2])}},
+                                {"error_of", "all channels by green's curve, even squares of 4 x 4 pixels"},
+                                {"absolute", fit.absolute},
+                                {"scale", fit.scale},
+                                {"channel_spread", fit.channel_spread},
+                                {"predictions", nlohmann::ordered_json::array()}};
   for (const Prediction& p : fit.predictions)
     out["predictions"].push_back({{"file", p.file},
                                   {"exposure_s", p.exposure_s},

@@ -3,30 +3,17 @@
 #pragma once
 
 #include <array>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "interface/jpeg.h"
-#include "lighting/picture_map.h"
+#include "calibration/photometric/photograph.h"
 #include "lighting/response.h"
 #include "lighting/result.h"
 
 // The response of an ordinary camera from photographs of one scene at several exposures.
 namespace lightwell::calibration {
-
-struct Photograph {
-  std::string file;
-  JpegPicture picture;
-  double exposure_s = 0;
-  std::optional<double> f_number, iso;
-};
-
-// JPEG; exposure time, f-number and ISO from its EXIF data. exposure_s: instead of EXIF's, where above 0.
-// shrink: see decode_jpeg. bad_input: unreadable, not a JPEG, no exposure time anywhere.
-Result<Photograph> read_photograph(const std::filesystem::path& file, double exposure_s, int shrink);
 
 inline constexpr std::size_t kMostPhotographs = 30;  // every one is compared with every other
 // bad_input: too few or too many; to be asked before they are read.
@@ -59,18 +46,16 @@ struct BracketFit {
 // OpenCV's Debevec–Malik or Robertson solver, given not single pixels but medians: what the pixels of one code in one
 // photograph have in the others. The curve is made to increase (pooling adjacent violators). The reported error is that
 // of exposures which were kept out of a fit and foretold by it, all three channels by the curve of green as
-// merge_brackets has them, at the size that the photographs were decoded to; the response itself is of all. With more than some two
-// stops between neighbours the pictures overlap too little to tell the curve. Robertson's does not smooth: with even
+// merge_brackets has them; the response itself is of all. Both are of the squares' mean codes, and of those squares alone
+// that are even in the photographs compared: the mean code of others is not the code of their mean light. With more than
+// some two stops between neighbours the pictures overlap too little to tell the curve. Robertson's does not smooth: with even
 // steps it keeps, of its straight start, what repeats from step to step.
-// bad_input: fewer than 3 photographs or exposures, more than kMostPhotographs, different sizes, codes that do not follow the exposures.
+// bad_input: fewer than 3 photographs or exposures, more than kMostPhotographs, different sizes,
+// apertures or ISO, codes that do not follow the exposures.
 Result<BracketFit> fit_brackets(std::vector<Photograph> photographs, BracketSolver solver);
 
 // Multiplies all luminances by what a meter says they are too small by.
 void scale_luminance(BracketFit& fit, double scale);
-
-// Radiance of every pixel from the exposures in which it is neither dark nor clipped; clipped: a channel of the pixel is
-// so in all of them.
-RadiancePicture merge_brackets(const std::vector<Photograph>& photographs, const Response& response);
 
 // A line for a person where red's or blue's curve is not green's, which the response is; else empty.
 std::string channel_warning(const BracketFit& fit);
