@@ -35,6 +35,11 @@ if(LIGHTWELL_SANITIZE)
   # Through a sanitizer's checks GCC takes a moved std::variant's other kinds for uninitialised.
   target_compile_options(lightwell_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(lightwell_flags INTERFACE -fsanitize=${LIGHTWELL_SANITIZE})
+  # Not part of undefined, though it is: a number that the integer does not hold.
+  if(LIGHTWELL_SANITIZE MATCHES "undefined")
+    target_compile_options(lightwell_flags INTERFACE -fsanitize=float-cast-overflow -fno-sanitize-recover=all)
+    target_link_options(lightwell_flags INTERFACE -fsanitize=float-cast-overflow)
+  endif()
 endif()
 
 # lightwell_library(name SOURCES a.cpp … DEPENDS targets …): a room's static library.

@@ -42,25 +42,27 @@ bool inside(const cv::Mat& grey, cv::Point2f p) {
          p.y <= static_cast<float>(grey.rows - 1);
 }
 
-// A row of corners at the border, and the row inside of it.
+// A row of corners at the border, the row inside of it, and whether the picture shows both of each pair.
 struct Border {
   std::vector<cv::Point2f> outer, inner;
+  std::vector<bool> seen;
 };
 
 bool has_row_beyond(const cv::Mat& grey, const Border& border) {
   std::size_t seen = 0, found = 0;
   for (std::size_t i = 0; i < border.outer.size(); ++i) {
+    if (!border.seen[i]) continue;
     const cv::Point2f out = border.outer[i] - border.inner[i];
     const cv::Point2f along = i + 1 < border.outer.size() ? border.outer[i + 1] - border.outer[i]
                                                           : border.outer[i] - border.outer[i - 1];
     const float here = checks(grey, border.outer[i], 0.3f * out, 0.3f * along);
+    if (here <= 0 || !inside(grey, border.outer[i] + 1.3f * out)) continue;
     float best = 0;
     // The next row is about a step away: fisheyes shrink it, near boards stretch it.
     for (const float step : {0.7f, 0.8f, 0.9f, 1.0f, 1.1f})
       for (const float side : {-0.1f, 0.f, 0.1f})
         best = std::max(
             best, checks(grey, border.outer[i] + step * out + side * along, 0.25f * out, 0.25f * along));
-    if (!inside(grey, border.outer[i] + 1.3f * out)) continue;
     ++seen;
     found += best > 0.5f * here;
   }
@@ -114,7 +116,7 @@ std::optional<std::pair<int, int>> other_board(const cv::Mat& grey, const Corner
   if (seen.first >= asked.first && seen.second >= asked.second) return size;
   for (const auto& [c, r] : {*size, std::pair(size->second, size->first)})
     if (const BoardGrid board = board_of_grid(grid, c, r); !board.corners.empty())
-      return goes_on(grey, board.corners, c, r) ? std::nullopt : size;
+      return goes_on(grey, board.corners, board.seen, c, r) ? std::nullopt : size;
   return {};
 }
 
@@ -159,20 +161,23 @@ ChessboardSearch find_chessboard(const cv::Mat& grey, int columns, int rows) {
   return out;
 }
 
-bool goes_on(const cv::Mat& grey, const std::vector<cv::Point2f>& corners, int columns, int rows) {
-  const auto corner = [&](int r, int c) { return corners[static_cast<std::size_t>(r * columns + c)]; };
+bool goes_on(const cv::Mat& grey, const std::vector<cv::Point2f>& corners, const std::vector<bool>& seen,
+             int columns, int rows) {
   Border borders[4];
+  const auto add = [&](Border& border, int r, int c, int inner_r, int inner_c) {
+    const auto outer = static_cast<std::size_t>(r * columns + c),
+               inner = static_cast<std::size_t>(inner_r * columns + inner_c);
+    border.outer.push_back(corners[outer]);
+    border.inner.push_back(corners[inner]);
+    border.seen.push_back(seen[outer] && seen[inner]);
+  };
   for (int c = 0; c < columns; ++c) {
-    borders[0].outer.push_back(corner(0, c));
-    borders[0].inner.push_back(corner(1, c));
-    borders[1].outer.push_back(corner(rows - 1, c));
-    borders[1].inner.push_back(corner(rows - 2, c));
+    add(borders[0], 0, c, 1, c);
+    add(borders[1], rows - 1, c, rows - 2, c);
   }
   for (int r = 0; r < rows; ++r) {
-    borders[2].outer.push_back(corner(r, 0));
-    borders[2].inner.push_back(corner(r, 1));
-    borders[3].outer.push_back(corner(r, columns - 1));
-    borders[3].inner.push_back(corner(r, columns - 2));
+    add(borders[2], r, 0, r, 1);
+    add(borders[3], r, columns - 1, r, columns - 2);
   }
   return std::any_of(std::begin(borders), std::end(borders),
                      [&](const Border& b) { return has_row_beyond(grey, b); });

@@ -22,8 +22,9 @@ struct ChessboardSearch {
 // A picture without checks costs some tenths of a second a megapixel, whatever its texture.
 ChessboardSearch find_chessboard(const cv::Mat& grey, int columns, int rows);
 
-// Whether the checks go on beyond the outermost corners, so that the board has more of them.
-bool goes_on(const cv::Mat& grey, const std::vector<cv::Point2f>& corners, int columns, int rows);
+// Whether the checks go on beyond the outermost corners, so that the board has more of them; as those that are seen say.
+bool goes_on(const cv::Mat& grey, const std::vector<cv::Point2f>& corners, const std::vector<bool>& seen,
+             int columns, int rows);
 
 // Whether a board would show its corners here: black and white are far apart, and the strongest edges are narrower than
 // the checks of a board that fills the picture.

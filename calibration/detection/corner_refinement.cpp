@@ -17,7 +17,21 @@ cv::Point2f refined(const cv::Mat& grey, cv::Point2f corner, int half) {
 }
 
 int half_window(double neighbour_px) {
-  return std::clamp(static_cast<int>(0.35 * neighbour_px), 2, 11);
+  return static_cast<int>(std::clamp(0.35 * neighbour_px, 2.0, 11.0));
+}
+
+// In a window that reaches 1.5 px far, of a picture twice as large.
+cv::Point2f refined_closely(const cv::Mat& grey, cv::Point2f corner) {
+  constexpr int kAround = 12;  // px
+  const cv::Point middle(cvRound(corner.x), cvRound(corner.y));
+  const cv::Rect near = cv::Rect(middle.x - kAround, middle.y - kAround, 2 * kAround + 1, 2 * kAround + 1) &
+                        cv::Rect(0, 0, grey.cols, grey.rows);
+  if (near.empty()) return corner;
+  cv::Mat larger;
+  cv::resize(grey(near), larger, {}, 2, 2, cv::INTER_CUBIC);
+  // The centre of pixel (0, 0) is the origin in both.
+  const cv::Point2f half(0.5f, 0.5f), origin = near.tl();
+  return (refined(larger, 2 * (corner - origin + half) - half, 3) + half) / 2 - half + origin;
 }
 
 }  // namespace
@@ -29,11 +43,19 @@ void refine_corners(const cv::Mat& grey, const std::vector<double>& neighbour_px
 }
 
 std::optional<cv::Point2f> meeting_point(const cv::Mat& grey, cv::Point2f near, double room_px) {
-  const cv::Point2f narrow = refined(grey, near, half_window(room_px)),
-                    wide = refined(grey, near, half_window(1.6 * room_px));
-  constexpr double kMostApart = 0.25;  // px
-  if (cv::norm(narrow - wide) > kMostApart) return {};
-  return narrow;
+  const int half = half_window(room_px), wide = std::max(half + 1, 8 * half / 5);
+  if (half > room_px) return {};
+  const cv::Point2f place = refined(grey, near, half);
+  const bool has_room = wide + 0.5 <= room_px;
+  // Where no edges cross, a search stays at its start, or goes to somewhere on the one edge near it. Of two ways aside
+  // one is along it.
+  for (const cv::Point2f& aside : {cv::Point2f(0.4f, 0.3f), cv::Point2f(-0.3f, 0.4f)}) {
+    constexpr double kMostApart = 0.25;  // px
+    const cv::Point2f other =
+        has_room ? refined(grey, place + aside, wide) : refined_closely(grey, place + aside);
+    if (cv::norm(other - place) > kMostApart) return {};
+  }
+  return place;
 }
 
 float code_at(const cv::Mat& grey, cv::Point2f place) {

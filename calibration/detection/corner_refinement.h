@@ -13,8 +13,8 @@ namespace lightwell::calibration {
 void refine_corners(const cv::Mat& grey, const std::vector<double>& neighbour_px,
                     std::vector<cv::Point2f>& corners);
 
-// Where the edges meet near a place, found alike in two windows. Where something else than straight edges is in them,
-// they find different places, and there is none.
+// Where the edges meet near a place, found alike in two windows of different width. Where something else than straight
+// edges is in them, they find different places, and there is none; nor where there are less than 2 px of room.
 // room: to what else there is, px
 std::optional<cv::Point2f> meeting_point(const cv::Mat& grey, cv::Point2f near, double room_px);
 

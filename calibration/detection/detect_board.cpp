@@ -22,10 +22,21 @@ std::vector<double> nearest_px(const std::vector<cv::Point2f>& corners) {
   return out;
 }
 
+// The hidden ones stay where they are guessed: a search would move them to the edge of what hides them.
+void refine_seen(const cv::Mat& grey, ChessboardSearch& search) {
+  std::vector<cv::Point2f> seen;
+  for (std::size_t i = 0; i < search.corners.size(); ++i)
+    if (search.seen[i]) seen.push_back(search.corners[i]);
+  refine_corners(grey, nearest_px(seen), seen);
+  auto next = seen.begin();
+  for (std::size_t i = 0; i < search.corners.size(); ++i)
+    if (search.seen[i]) search.corners[i] = *next++;
+}
+
 Detection chessboard(const cv::Mat& grey, const Board& board) {
   Detection out;
   ChessboardSearch search = find_chessboard(grey, board.columns, board.rows);
-  std::vector<cv::Point2f>& corners = search.corners;
+  const std::vector<cv::Point2f>& corners = search.corners;
   if (corners.empty()) {
     // Checks would show in a sharp and bright picture even where some are hidden.
     out.of_no_board = !search.shows_checks && is_sharp_and_bright(grey);
@@ -38,8 +49,8 @@ Detection chessboard(const cv::Mat& grey, const Board& board) {
     out.reason = out.of_no_board ? "shows no chessboard" : "no whole " + name(board) + " found";
     return out;
   }
-  refine_corners(grey, nearest_px(corners), corners);
-  out.board_is_larger = goes_on(grey, corners, board.columns, board.rows);
+  refine_seen(grey, search);
+  out.board_is_larger = goes_on(grey, corners, search.seen, board.columns, board.rows);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (!search.seen[i]) continue;
     const auto column = static_cast<double>(i % static_cast<std::size_t>(board.columns));
@@ -56,16 +67,8 @@ Detection markers(const cv::Mat& grey, const Board& board) {
       board.kind == BoardKind::charuco ? find_charuco(grey, board) : find_aprilgrid(grey, board);
   out.reason = search.reason;
   out.of_no_board = search.of_another_board;
-  std::vector<cv::Point2f> corners;
-  for (const MarkerCorner& corner : search.corners) corners.push_back(corner.pixel);
-  if (board.kind == BoardKind::charuco) {
-    std::vector<double> room = nearest_px(corners);
-    // Beside a corner stand the markers, half of what they leave of the pitch away.
-    for (double& px : room) px *= 1 - board.marker_mm / board.pitch_mm;
-    refine_corners(grey, room, corners);
-  }
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    out.points.push_back({search.corners[i].target_mm, {corners[i].x, corners[i].y}});
+  for (const MarkerCorner& corner : search.corners)
+    out.points.push_back({corner.target_mm, {corner.pixel.x, corner.pixel.y}});
   out.points = with_neighbours(grey, board, std::move(out.points));
   return out;
 }

@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/detection/april_tags.h"
+#include "calibration/detection/corner_refinement.h"
 
 namespace lightwell::calibration {
 namespace {
@@ -119,15 +120,27 @@ double disorder(const Markers& markers, const CharucoLayout& layout) {
   return *middle;
 }
 
+// How far the markers' corners are from the check's that they surround, along the less way; h: near one of them.
+double room_px(const cv::Matx33d& h, int column, int row, double margin) {
+  const cv::Point2d x = (mapped(h, column + margin, row) - mapped(h, column - margin, row)) / 2,
+                    y = (mapped(h, column, row + margin) - mapped(h, column, row - margin)) / 2;
+  return std::min({cv::norm(x), cv::norm(y), cv::norm(x + y), cv::norm(x - y)});
+}
+
 // Inner corners whose two markers are both seen and agree on the place.
-std::vector<MarkerCorner> corners_between(const Markers& markers, const CharucoLayout& layout) {
+struct CornersBetween {
+  std::vector<MarkerCorner> corners;  // near which the picture's edges meet
+  bool blurred = false;               // there are others, near which they do not
+};
+
+CornersBetween corners_between(const cv::Mat& grey, const Markers& markers, const CharucoLayout& layout) {
   const std::vector<cv::Point> squares = layout.squares();
   std::map<std::pair<int, int>, cv::Matx33d> seen;  // by row and column of the square
   for (std::size_t i = 0; i < markers.ids.size(); ++i) {
     const cv::Point square = squares[static_cast<std::size_t>(markers.ids[i])];
     seen[{square.y, square.x}] = layout.picture_from_board(square, markers.corners[i]);
   }
-  std::vector<MarkerCorner> out;
+  CornersBetween out;
   for (int r = 1; r < layout.board.rows; ++r)
     for (int c = 1; c < layout.board.columns; ++c) {
       const bool falling = layout.has_marker(c - 1, r - 1);  // markers before and behind, or beside
@@ -139,8 +152,13 @@ std::vector<MarkerCorner> corners_between(const Markers& markers, const CharucoL
       constexpr double kMostApart =
           0.2;  // pitches: a lens bends less over one, a wrong marker is a pitch off
       if (!(cv::norm(a - b) < kMostApart * pitch_px)) continue;
-      const double pitch_mm = layout.board.pitch_mm;
-      out.push_back({{pitch_mm * (c - 1), pitch_mm * (r - 1), 0}, cv::Point2f((a + b) / 2)});
+      const double pitch_mm = layout.board.pitch_mm, margin = (1 - layout.board.marker_mm / pitch_mm) / 2;
+      const double room =
+          std::min(room_px(first->second, c, r, margin), room_px(second->second, c, r, margin));
+      if (const auto pixel = meeting_point(grey, cv::Point2f((a + b) / 2), room))
+        out.corners.push_back({{pitch_mm * (c - 1), pitch_mm * (r - 1), 0}, *pixel});
+      else
+        out.blurred = true;
     }
   return out;
 }
@@ -163,8 +181,13 @@ MarkerSearch find_charuco(const cv::Mat& grey, const Board& board) {
   const CharucoLayout today{board, false}, legacy{board, true};
   const bool is_legacy =
       board.rows % 2 == 0 && disorder(best.markers, legacy) < disorder(best.markers, today);
-  out.corners = corners_between(best.markers, is_legacy ? legacy : today);
+  CornersBetween found = corners_between(grey, best.markers, is_legacy ? legacy : today);
+  out.corners = std::move(found.corners);
   if (!out.corners.empty()) return out;
+  if (found.blurred) {
+    out.reason = "shows markers of a " + name(board) + ", but no corner between them sharp and large enough";
+    return out;
+  }
   out.of_another_board = true;
   const auto other = other_markers(grey, board.kind);
   if (other.count > size(best))

@@ -23,7 +23,8 @@ struct MarkerSearch {
 };
 
 // Corners of the checks between ArUco markers; whichever of ArUco's usual dictionaries the picture shows, and, with even
-// rows, whichever of the two layouts that OpenCV has printed. A marker seen in two places is left out.
+// rows, whichever of the two layouts that OpenCV has printed. A marker seen in two places is left out, and a corner that
+// the picture does not bear out between its markers.
 MarkerSearch find_charuco(const cv::Mat& grey, const Board& board);
 
 // Markers that say what board a picture shows; fewer are found by chance, or stand behind it.

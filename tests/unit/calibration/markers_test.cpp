@@ -73,6 +73,22 @@ TEST(Charuco, AHiddenPartIsLeftOut) {
   expect_in_place(found, view, {40, 40, 0});
 }
 
+// One corner has no neighbour that says how large its window may be.
+TEST(Charuco, ACornerBetweenTheOnlyTwoMarkersIsInItsPlace) {
+  const Board board = board_of("5x7:40:charuco");
+  const Print whole = charuco(board, false);
+  for (const double distance_mm : {120, 180, 250}) {
+    const View view = slanted(80, 80, distance_mm);
+    const auto two = [&](double x, double y) {
+      return x > 40 && x < 120 && y > 40 && y < 120 ? whole(x, y) : 0.6;
+    };
+    const Detection found = detect_board(view.photograph(two), board);
+    ASSERT_EQ(found.points.size(), 1u) << distance_mm << found.reason;
+    EXPECT_EQ(found.points[0].target_mm, Vec3d(40, 40, 0));
+    expect_in_place(found, view, {40, 40, 0});
+  }
+}
+
 const Lens kNarrow{{720, 720}, {340, 340}, {355, 362}, {0.02, 0.002, 0, 0}, 60 * kPi / 180};
 
 View of_grid(const Lens& lens, double distance_mm) {

@@ -192,28 +192,42 @@ TEST(DetectBoard, AHalfHiddenBoardIsABoard) {
   EXPECT_THAT(found.reason, HasSubstr("no whole 6x5 chessboard"));
 }
 
+// What may hide some of a board: a bare hand, a sleeve of coarse cloth.
+std::vector<Texture> hands() {
+  return {{"skin", [](double, double) { return 0.5; }},
+          {"cloth", [](double x, double y) {
+             return 0.2 +
+                    0.6 * coin(static_cast<int>(std::floor(x / 6)), static_cast<int>(std::floor(y / 6)));
+           }}};
+}
+
 // A hand over some corners hides neither the others nor where they are on the board. Lines along the raster are off by up
 // to half a sample, 1/8 px on either axis, and refinement adds 0.05 px.
 TEST(DetectBoard, CornersBesideAHandAreUsed) {
   const Slant slant;
   const Scene board = board_scene(slant);
-  for (const Vec2d& hand : {Vec2d(0.4, 0.3), Vec2d(2.5, 2.4)}) {
-    const auto covers = [&](const Vec2d& place, double reach) { return (place - hand).norm() < reach; };
-    const auto scene = [&](double x, double y) { return covers(slant.place(x, y), 1.1) ? 0.5 : board(x, y); };
-    const Detection found = detect_board(photographed(scene), board_of("6x5:10"));
-    std::size_t visible = 0;  // further from the hand than a corner's window
-    for (int c = 0; c < 6; ++c)
-      for (int r = 0; r < 5; ++r) visible += !covers(Vec2d(c, r), 1.5);
-    EXPECT_GE(found.points.size(), visible) << hand.transpose() << found.reason;
-    for (const Correspondence& point : found.points) {
-      // The first corner has light in the quadrant of growing columns and rows: it is the scene's last.
-      const Vec2d place(5 - point.target_mm.x() / 10, 4 - point.target_mm.y() / 10);
-      const double shrink = 1 + slant.far * place.x();
-      const Vec2d truth(70 + 30 * place.x() / shrink, 50 + (30 * place.y() + 4 * place.x()) / shrink);
-      EXPECT_FALSE(covers(place, 1.1)) << hand.transpose() << ": " << place.transpose();
-      EXPECT_LT((point.pixel - truth).norm(), 0.23) << hand.transpose() << ": " << place.transpose();
+  for (const Texture& hand_of : hands())
+    for (const Vec2d& hand : {Vec2d(0.4, 0.3), Vec2d(2.5, 2.4)}) {
+      const auto covers = [&](const Vec2d& place, double reach) { return (place - hand).norm() < reach; };
+      const auto scene = [&](double x, double y) {
+        return covers(slant.place(x, y), 1.1) ? hand_of.scene(x, y) : board(x, y);
+      };
+      const Detection found = detect_board(photographed(scene), board_of("6x5:10"));
+      std::size_t visible = 0;  // further from the hand than a corner's window
+      for (int c = 0; c < 6; ++c)
+        for (int r = 0; r < 5; ++r) visible += !covers(Vec2d(c, r), 1.5);
+      const std::string what = hand_of.what + " at " + std::to_string(hand.x()) + ": ";
+      EXPECT_GE(found.points.size(), visible) << what << found.reason;
+      EXPECT_FALSE(found.board_is_larger) << what;
+      for (const Correspondence& point : found.points) {
+        // The first corner has light in the quadrant of growing columns and rows: it is the scene's last.
+        const Vec2d place(5 - point.target_mm.x() / 10, 4 - point.target_mm.y() / 10);
+        const double shrink = 1 + slant.far * place.x();
+        const Vec2d truth(70 + 30 * place.x() / shrink, 50 + (30 * place.y() + 4 * place.x()) / shrink);
+        EXPECT_FALSE(covers(place, 1.1)) << what << place.transpose();
+        EXPECT_LT((point.pixel - truth).norm(), 0.23) << what << place.transpose();
+      }
     }
-  }
 }
 
 // A board turned in the picture has rows that follow its columns all the same: a mirrored one would put the camera
