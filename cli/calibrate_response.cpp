@@ -10,6 +10,7 @@
 #include "interface/atomic_file.h"
 #include "interface/calibration_io.h"
 #include "interface/option_range.h"
+#include "interface/printable.h"
 #include "interface/same_file.h"
 
 namespace lightwell::cli {
@@ -105,7 +106,7 @@ int run(const Options& o) {
     return fail(status.error());
   if (report->recorded)
     for (const std::string& line : report->recorded->left_out)
-      std::fprintf(stderr, "lightwell: %s, left out\n", line.c_str());
+      std::fprintf(stderr, "lightwell: %s, left out\n", printable(line).c_str());
   for (const std::string& line : calibration::assumption_lines(*report))
     std::fprintf(stderr, "lightwell: %s\n", line.c_str());
   if (o.json)

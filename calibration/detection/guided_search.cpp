@@ -20,7 +20,9 @@ namespace {
 struct SeenCorner {
   cv::Point2f pixel, x, y;  // x, y: along the smallest quadrant's sides, px
   // How far the nearest other thing on the board is.
-  [[nodiscard]] double room_px() const { return std::min(cv::norm(x), cv::norm(y)); }
+  [[nodiscard]] double room_px() const {
+    return std::min({cv::norm(x), cv::norm(y), cv::norm(x + y), cv::norm(x - y)});
+  }
 };
 
 // How much lighter the first colour is than the second: the least of it around the corner. Negative where the second

@@ -170,7 +170,8 @@ Result<double> CsvTable::number(std::size_t row, std::string_view column, double
   const auto index = index_of(column);
   verify_bug(index.has_value(), "number: column was not required");
   const std::string& field = rows_[row].fields[*index];
-  const char* begin = field.data() + (field.starts_with('+') ? 1 : 0);
+  const bool plus = field.starts_with('+') && !field.starts_with("+-");
+  const char* begin = field.data() + (plus ? 1 : 0);
   const char* end = field.data() + field.size();
   double value = 0;
   const auto [stop, failure] = std::from_chars(begin, end, value);

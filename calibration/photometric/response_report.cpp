@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "interface/printable.h"
 #include "interface/response_json.h"
 
 namespace lightwell::calibration {
@@ -244,7 +245,8 @@ std::string summary(const ResponseReport& report) {
   }
   out += "\n     patch            cd/m2      code     error     stops\n";
   const auto add = [&](const PatchResidual& r, const char* use) {
-    out += line("  %-14.14s %10.5g %9.2f", r.patch.name.c_str(), r.patch.luminance_cd_m2, r.patch.code);
+    out += line("  %-14.14s %10.5g %9.2f", printable(r.patch.name).c_str(), r.patch.luminance_cd_m2,
+                r.patch.code);
     if (std::isfinite(r.stops))
       out += line("  %+7.2f %%  %+7.3f  %s\n", 100 * r.relative_error, r.stops, use);
     else
@@ -257,7 +259,8 @@ std::string summary(const ResponseReport& report) {
   for (const PatchResidual& r : fit.check)
     add(r, r.inside ? "check, inside its 95 % interval" : "check, OUTSIDE its 95 % interval");
   for (const ChannelGain& c : report.channels)
-    out += line("  channel %s: gain %.4f, scatter %.2f %%\n", c.channel.c_str(), c.gain, 100 * c.scatter);
+    out += line("  channel %s: gain %.4f, scatter %.2f %%\n", printable(c.channel).c_str(), c.gain,
+                100 * c.scatter);
   if (fit.usable_codes)
     out += line("good to 5 %% (95 %% sure) from %.4g to %.4g cd/m2\n",
                 fit.response.luminance_cd_m2((*fit.usable_codes)[0]),

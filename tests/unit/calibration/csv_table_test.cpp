@@ -75,5 +75,14 @@ TEST(CsvTable, NumbersOfNoUseAreRefusedWithTheRange) {
   EXPECT_FALSE(table->number(0, "l", 0, 1, "a number from 0 to 1"));
 }
 
+TEST(CsvTable, ANumberHasOneSign) {
+  const auto table = CsvTable::parse("l\n+5\n-5\n+-5\n++5\n-+5\n+\n", "x");
+  ASSERT_TRUE(table) << table.error().message;
+  const bool good[] = {true, true, false, false, false, false};
+  for (std::size_t row = 0; row < table->rows(); ++row)
+    EXPECT_EQ(table->number(row, "l", -9, 9, "a number from -9 to 9").ok(), good[row])
+        << table->text(row, "l");
+}
+
 }  // namespace
 }  // namespace lightwell::calibration
