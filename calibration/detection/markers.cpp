@@ -18,20 +18,75 @@ namespace {
 struct Markers {
   std::vector<std::vector<cv::Point2f>> corners;  // four each, clockwise from the marker's first
   std::vector<int> ids;
+  double by_chance = 0;  // how many of the picture's frames would be read as one if they held random bits
 };
 
 cv::Point2f centre(const std::vector<cv::Point2f>& corners) {
   return (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
 }
 
+// Whether a quad is a dark frame with something lighter drawn in it.
+bool is_frame(const cv::Mat& grey, const std::vector<cv::Point2f>& quad) {
+  constexpr int kSide = 24,
+                kBorder = 4;  // px; the border of the finest markers is a ninth, of the coarsest a sixth
+  constexpr auto kFar = static_cast<float>(kSide);
+  const std::vector<cv::Point2f> square = {{0, 0}, {kFar, 0}, {kFar, kFar}, {0, kFar}};
+  cv::Mat seen;
+  cv::warpPerspective(grey, seen, cv::getPerspectiveTransform(quad, square), {kSide, kSide});
+  const cv::Range inside(kBorder, kSide - kBorder);
+  double darkest = 0, brightest = 0;
+  cv::minMaxLoc(seen(inside, inside), &darkest, &brightest);
+  constexpr double kLeastContrast = 40;  // codes
+  if (brightest - darkest < kLeastContrast) return false;
+  // A pixel off the edge, along which the quad's own error is.
+  const double middle = (darkest + brightest) / 2;
+  int dark = 0, all = 0;
+  for (int i = 1; i + 1 < kSide; ++i)
+    for (const cv::Point p : {cv::Point(i, 1), {i, kSide - 2}, {1, i}, {kSide - 2, i}}) {
+      dark += seen.at<std::uint8_t>(p) < middle;
+      ++all;
+    }
+  return 10 * dark > 8 * all;
+}
+
+bool is_within(cv::Point2f place, const std::vector<std::vector<cv::Point2f>>& quads) {
+  return std::any_of(quads.begin(), quads.end(),
+                     [&](const auto& quad) { return cv::pointPolygonTest(quad, place, false) >= 0; });
+}
+
+// Part of all bits that are read as a marker of a dictionary, turned in any way, wrong bits corrected.
+double chance_of(const cv::aruco::Dictionary& dictionary, double correction_rate) {
+  const int bits = dictionary.markerSize * dictionary.markerSize,
+            corrected = static_cast<int>(dictionary.maxCorrectionBits * correction_rate);
+  double neighbours = 0, of_so_many = 1;
+  for (int wrong = 0; wrong <= corrected; ++wrong) {
+    neighbours += of_so_many;
+    of_so_many *= static_cast<double>(bits - wrong) / (wrong + 1);
+  }
+  return std::min(1.0, 4 * dictionary.bytesList.rows * neighbours * std::pow(0.5, bits));
+}
+
 Markers all_markers(const cv::Mat& grey, int dictionary) {
   auto parameters = cv::aruco::DetectorParameters::create();
   parameters->adaptiveThreshWinSizeMax = 53;       // large markers too
   parameters->polygonalApproxAccuracyRate = 0.06;  // a fisheye bends their sides
+  const auto markers = cv::aruco::getPredefinedDictionary(dictionary);
   Markers out;
-  cv::aruco::detectMarkers(grey, cv::aruco::getPredefinedDictionary(dictionary), out.corners, out.ids,
-                           parameters);
+  std::vector<std::vector<cv::Point2f>> others;
+  cv::aruco::detectMarkers(grey, markers, out.corners, out.ids, parameters, others);
+  // Bits of a marker are quads too.
+  const auto frames = std::count_if(others.begin(), others.end(), [&](const auto& quad) {
+    return is_frame(grey, quad) && !is_within(centre(quad), out.corners);
+  });
+  out.by_chance =
+      chance_of(*markers, parameters->errorCorrectionRate) * static_cast<double>(out.ids.size() + frames);
   return out;
+}
+
+// Whether so many markers say what board a picture shows. Three of random bits at least, and far more than by chance: of
+// 4x4 bits and a thousand ids every sixteenth frame is one, so that half of all have to be.
+bool is_telling(std::size_t count, double by_chance) {
+  return count >= kTellingMarkers && static_cast<double>(count) > 8 * by_chance;
 }
 
 // Markers of one dictionary, as a board has them and otherwise.
@@ -52,6 +107,7 @@ BoardMarkers find_markers(const cv::Mat& grey, int dictionary, int count) {
     if (std::none_of(places.begin(), places.end(), same)) places.push_back(i);
   }
   BoardMarkers out;
+  out.markers.by_chance = all.by_chance;
   for (const auto& [id, places] : seen)
     if (id >= count)
       out.beyond.push_back(id);
@@ -192,12 +248,13 @@ MarkerSearch find_charuco(const cv::Mat& grey, const Board& board) {
   const auto other = other_markers(grey, board.kind);
   if (other.count > size(best))
     out.reason = "shows " + other.name + ", a " + name(board) + " has ArUco markers";
-  else if (best.beyond.size() >= kTellingMarkers)
+  else if (is_telling(best.beyond.size(), best.markers.by_chance))
     out.reason = "shows markers " + ids_in_words(best.beyond) + ", a " + name(board) + " has 0 to " +
                  std::to_string(count - 1);
-  else if (best.twice.size() >= kTellingMarkers)
+  else if (is_telling(best.twice.size(), best.markers.by_chance))
     out.reason = "shows markers " + ids_in_words(best.twice) + " twice";
-  else if (best.markers.ids.size() > kTellingMarkers)
+  else if (best.markers.ids.size() > kTellingMarkers &&
+           is_telling(best.markers.ids.size(), best.markers.by_chance))
     out.reason =
         "shows markers that are not where a " + name(board) + " has them: are its columns and rows right?";
   else {
@@ -220,13 +277,16 @@ OtherMarkers other_markers(const cv::Mat& grey, BoardKind kind) {
                              {cv::aruco::DICT_APRILTAG_25h9, "AprilTags 25h9", false},
                              {cv::aruco::DICT_APRILTAG_36h10, "AprilTags 36h10", false}};
   OtherMarkers out;
-  const auto add = [&](std::size_t count, const char* name) {
-    if (count >= std::max(kTellingMarkers, out.count + 1)) out = {count, name};
+  const auto add = [&](std::size_t count, double by_chance, const char* name) {
+    if (is_telling(count, by_chance) && count > out.count) out = {count, name};
   };
   if (kind == BoardKind::charuco)
-    add(find_april_tags(grey, std::numeric_limits<int>::max()).tags.size(), "AprilTags 36h11");
-  for (const Kind& k : kKinds)
-    if (kind == BoardKind::aprilgrid || !k.is_aruco) add(all_markers(grey, k.dictionary).ids.size(), k.name);
+    add(find_april_tags(grey, std::numeric_limits<int>::max()).tags.size(), 0, "AprilTags 36h11");
+  for (const Kind& k : kKinds) {
+    if (kind != BoardKind::aprilgrid && k.is_aruco) continue;
+    const Markers seen = all_markers(grey, k.dictionary);
+    add(seen.ids.size(), seen.by_chance, k.name);
+  }
   return out;
 }
 

@@ -30,7 +30,8 @@ MarkerSearch find_charuco(const cv::Mat& grey, const Board& board);
 // Markers that say what board a picture shows; fewer are found by chance, or stand behind it.
 constexpr std::size_t kTellingMarkers = 3;
 
-// Markers of the kinds that a board has not, the kind of which most are seen; of at least kTellingMarkers.
+// Markers of the kinds that a board has not, the kind of which most are seen; of at least kTellingMarkers, and of more
+// than frames with random bits would be read as.
 struct OtherMarkers {
   std::size_t count = 0;
   std::string name;  // "AprilTags 25h9"

@@ -32,6 +32,9 @@ struct Sight {
 constexpr Sight kSights[] = {{0, 0},    {20, 200}, {45, 10},  {45, 130}, {45, 250}, {72, 60},  {72, 130},
                              {72, 200}, {72, 270}, {72, 340}, {88, 0},   {88, 95},  {88, 180}, {88, 300}};
 
+// Noise of 2 of 190 codes is some 0.02 px on a corner; a window on a bent edge adds up to 0.1 px on either axis.
+constexpr double kMostRms = 0.15;  // px
+
 class MarkerBoards : public testing::Test {
  protected:
   [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
@@ -108,7 +111,7 @@ TEST_F(MarkerBoards, AnAprilGridGivesTheFisheyesLens) {
   ASSERT_TRUE(report.is_object());
   expect_lens(report, kWide);
   expect_views(report, 144, 13, 4);
-  EXPECT_LT(report["rms_px"], 0.3);  // what calibrations are asked for
+  EXPECT_LT(report["rms_px"], kMostRms);
 }
 
 TEST_F(MarkerBoards, AChArUcoBoardGivesTheFisheyesLens) {
@@ -117,7 +120,7 @@ TEST_F(MarkerBoards, AChArUcoBoardGivesTheFisheyesLens) {
   ASSERT_TRUE(report.is_object());
   expect_lens(report, kWide);
   expect_views(report, 48, 13, 4);
-  EXPECT_LT(report["rms_px"], 0.3);
+  EXPECT_LT(report["rms_px"], kMostRms);
 }
 
 }  // namespace

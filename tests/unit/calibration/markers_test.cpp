@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <opencv2/aruco.hpp>
+#include <random>
 #include <set>
 #include <string>
 
@@ -234,6 +236,42 @@ TEST(MarkerBoards, AForeignMarkerIsNoOtherBoard) {
   const Detection found = detect_board(of_grid(kWide, 450).photograph(one), grid);
   EXPECT_TRUE(found.points.empty());
   EXPECT_FALSE(found.of_no_board) << found.reason;
+}
+
+// Of a hundred frames with 4 x 4 random bits some six are in a dictionary of a thousand: windows of a house are no board.
+TEST(MarkerBoards, FramesWithRandomBitsAreNoOtherBoard) {
+  for (const unsigned seed : {1u, 2u}) {
+    std::mt19937 random(seed);
+    cv::Mat grey(720, 720, CV_8U, cv::Scalar(200));
+    constexpr int kBit = 8, kPitch = 70;  // px
+    for (int y = 20; y + 6 * kBit < grey.rows; y += kPitch)
+      for (int x = 20; x + 6 * kBit < grey.cols; x += kPitch) {
+        grey(cv::Rect(x, y, 6 * kBit, 6 * kBit)) = 20;
+        for (int bit = 0; bit < 16; ++bit)
+          if (random() % 2 == 0)
+            grey(cv::Rect(x + (1 + bit % 4) * kBit, y + (1 + bit / 4) * kBit, kBit, kBit)) = 200;
+      }
+    const GreyPicture picture{grey.cols, grey.rows, {grey.datastart, grey.dataend}};
+    std::vector<int> ids;
+    std::vector<std::vector<cv::Point2f>> corners;
+    cv::aruco::detectMarkers(grey, cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_1000), corners,
+                             ids);
+    EXPECT_GE(ids.size(), 3u);  // else the picture asks nothing
+    for (const char* board : {"6x6:88:aprilgrid", "7x6:40:charuco"}) {
+      const Detection found = detect_board(picture, board_of(board));
+      EXPECT_TRUE(found.points.empty()) << board;
+      EXPECT_FALSE(found.of_no_board) << board << ": " << found.reason;
+    }
+  }
+}
+
+// Half of this board's quads are black squares, which are no frames.
+TEST(MarkerBoards, AChArUcoBoardOfFourByFourBitsIsAnotherBoard) {
+  const Print shown = [p = charuco(board_of("7x6:88:charuco"), false, cv::aruco::DICT_4X4_250)](
+                          double x, double y) { return p(x, y + 528); };
+  const Detection found = detect_board(of_grid(kWide, 450).photograph(shown), board_of("6x6:88:aprilgrid"));
+  EXPECT_TRUE(found.of_no_board) << found.reason;
+  EXPECT_THAT(found.reason, testing::HasSubstr("shows ArUco markers of 4x4 bits"));
 }
 
 }  // namespace
