@@ -38,7 +38,7 @@ Status check_outputs(const Options& o) {
       {"--out", o.out}, {"--radiance", o.radiance}, {"--map", o.map}};
   for (std::size_t i = 0; i < outputs.size(); ++i)
     for (std::size_t k = 0; k < i; ++k)
-      if (!outputs[i].second.empty() && outputs[i].second == outputs[k].second)
+      if (is_one_output(outputs[i].second, outputs[k].second))
         return usage(std::string(outputs[i].first) + " and " + outputs[k].first + " name one file, " +
                      outputs[i].second + ", allowed two");
   std::vector<std::string> inputs = o.images;
@@ -180,7 +180,7 @@ int run(const Options& o) {
       calibration::fit_brackets(*photographs, o.solver == "debevec" ? calibration::BracketSolver::debevec
                                                                     : calibration::BracketSolver::robertson);
   if (!fit) return fail(fit.error());
-  calibration::scale_luminance(*fit, o.scale);
+  if (const Status status = calibration::scale_luminance(*fit, o.scale); !status) return fail(status.error());
   const auto map = write(o, *photographs, *optics, *fit);
   if (!map) return fail(map.error());
   if (const std::string warning = calibration::channel_warning(*fit); !warning.empty())
@@ -234,7 +234,7 @@ Command add_calibrate_brackets(CLI::App& group) {
   command
       ->add_option("--scale", options->scale,
                    "Multiplies all luminances: what `calibrate verify --environment MAP` says would agree")
-      ->check(numbers_above_0_to(1e6, "above 0, at most 1e6"))
+      ->check(numbers_from(1e-6, 1e6, "1e-6 to 1e6"))
       ->type_name("X");
   command->add_flag("--json", options->json, "The report as JSON on stdout");
   return {command, [options] { return run(*options); }};

@@ -15,4 +15,14 @@ Status check_output_is_no_input(const std::filesystem::path& output,
   return {};
 }
 
+bool is_one_output(const std::filesystem::path& a, const std::filesystem::path& b) {
+  if (a.empty() || b.empty()) return false;
+  if (a == b) return true;
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(a, ignored)) return std::filesystem::equivalent(a, b, ignored);
+  if (std::filesystem::exists(a, ignored)) return false;  // a terminal takes both
+  const auto whole_a = std::filesystem::weakly_canonical(std::filesystem::absolute(a, ignored), ignored);
+  return whole_a == std::filesystem::weakly_canonical(std::filesystem::absolute(b, ignored), ignored);
+}
+
 }  // namespace lightwell

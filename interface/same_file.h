@@ -13,4 +13,7 @@ namespace lightwell {
 Status check_output_is_no_input(const std::filesystem::path& output,
                                 std::initializer_list<std::filesystem::path> inputs);
 
+// Whether two names of files to write, which need not be there, are one regular file or will be. Empty names are none.
+bool is_one_output(const std::filesystem::path& a, const std::filesystem::path& b);
+
 }  // namespace lightwell

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/picture_map.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,8 +15,8 @@
 namespace lightwell {
 namespace {
 
-// Parts of pixels in a bin. On a lattice the area of a bin of so many is off by some √(4 √512 / 12) of them, half a
-// percent, and by several times that where bins and pixels run alike.
+// Parts of pixels in a bin, spread so that no outline runs along a row of them: the area of a bin of so many is off by
+// some √(4 √512 / 12) of them, half a percent.
 constexpr double kPartsPerBin = 512;
 constexpr int kMostPartsAlong = 256;  // of a pixel, beside the narrow bins at the pole
 
@@ -50,9 +52,7 @@ class Divider {
     bins_.clear();
     light_.clear();
     const int along = parts_along(centre, solid_angle_sr);
-    for (int v = 0; v < along; ++v)
-      for (int u = 0; u < along; ++u)
-        add_part(pixel + Vec2d((u + 0.5) / along - 0.5, (v + 0.5) / along - 0.5));
+    for (int i = 0; i < along * along; ++i) add_part(pixel + next_part());
     if (bins_.empty()) add_sliver(centre);
     const double share = solid_angle_sr / static_cast<double>(bins_.size());
     for (std::size_t i = 0; i < bins_.size(); ++i) {
@@ -65,6 +65,12 @@ class Divider {
   }
 
  private:
+  // Martin Roberts' sequence R2: 1/g and 1/g² where g³ = g + 1. It goes on from pixel to pixel.
+  Vec2d next_part() {
+    part_ += Vec2d(0.7548776662466927, 0.5698402909980532);
+    part_ -= part_.array().floor().matrix();
+    return part_ - Vec2d(0.5, 0.5);
+  }
   [[nodiscard]] int parts_along(const Vec3d& centre, double solid_angle_sr) const {
     const double theta = spherical_from_direction(world_from_camera_ * centre).theta_rad;
     const int ring =
@@ -82,8 +88,10 @@ class Divider {
 
   // What the border leaves of a pixel may hold no part's centre: then it is of the border beside it.
   void add_sliver(const Vec3d& centre) {
-    const double theta = lens_.max_theta_rad, s = std::sin(theta) / centre.head<2>().norm();
-    const Vec3d border(s * centre.x(), s * centre.y(), std::cos(theta));
+    const double theta = lens_.max_theta_rad, off_axis = centre.head<2>().norm();
+    // On the axis itself the border is as near on all sides.
+    const Vec2d away = off_axis > 0 ? Vec2d(centre.head<2>() / off_axis) : Vec2d::UnitX();
+    const Vec3d border(std::sin(theta) * away.x(), std::sin(theta) * away.y(), std::cos(theta));
     bins_.push_back(bin_of(grid_, world_from_camera_ * border));
     light_.push_back(1 / flat_.transmission(theta));
   }
@@ -92,6 +100,7 @@ class Divider {
   const FlatField& flat_;
   const PolarGrid& grid_;
   Eigen::Matrix3d world_from_camera_;
+  Vec2d part_ = Vec2d(0.5, 0.5);
   std::vector<std::size_t> bins_;  // of the pixel's parts
   std::vector<double> light_;      // for one unit that the pixel received
 };
@@ -108,18 +117,54 @@ Status check_sizes(const RadiancePicture& picture, const Lens& lens, const FlatF
   return {};
 }
 
-PolarMap map_of(const Sums& sums, const PolarGrid& grid) {
-  PolarMap map = PolarMap::make(grid, 3);
-  double measured_sr = 0;
-  for (std::size_t bin = 0; bin < grid.size(); ++bin) {
-    map.solid_angle_sr[bin] = static_cast<float>(sums.solid_angle_sr[bin]);
-    measured_sr += sums.solid_angle_sr[bin];
-    // By the solid angle as stored, so that their product is the light that came.
-    const auto stored = static_cast<double>(map.solid_angle_sr[bin]);
-    for (int c = 0; c < 3; ++c)
-      map.plane(c)[bin] =
-          stored > 0 ? static_cast<float>(sums.flux[bin][static_cast<std::size_t>(c)] / stored) : 0.0F;
+// Whether a bin lies in the field and the picture with all of its outline.
+class Inside {
+ public:
+  Inside(const Lens& lens, const PolarGrid& grid)
+      : lens_(lens), grid_(grid), camera_from_world_(world_from_camera_rotation(lens.zenith).transpose()) {}
+
+  [[nodiscard]] bool operator()(int ring, int sector) const {
+    const Vec3d centre = camera_from_world_ * grid_.bin_direction(ring, sector);
+    double radius = 0;
+    for (const double r : {0.0, 0.5, 1.0})
+      for (const double s : {0.0, 0.5, 1.0}) {
+        const Vec3d d =
+            camera_from_world_ * direction_from_spherical({grid_.theta_max_rad * (ring + r) / grid_.rings,
+                                                           2 * kPi * (sector + s) / grid_.sectors});
+        radius = std::max(radius, std::atan2(centre.cross(d).norm(), centre.dot(d)));
+        if (off_axis(d) > lens_.max_theta_rad || !in_picture(lens_.project(d))) return false;
+      }
+    return off_axis(centre) + radius <= lens_.max_theta_rad;
   }
+
+ private:
+  static double off_axis(const Vec3d& d) { return std::atan2(d.head<2>().norm(), d.z()); }
+  [[nodiscard]] bool in_picture(const Vec2d& p) const {
+    return p.x() >= -0.5 && p.y() >= -0.5 && p.x() <= lens_.image_size[0] - 0.5 &&
+           p.y() <= lens_.image_size[1] - 0.5;
+  }
+  const Lens& lens_;
+  const PolarGrid& grid_;
+  Eigen::Matrix3d camera_from_world_;
+};
+
+PolarMap map_of(const Sums& sums, const Lens& lens, const PolarGrid& grid) {
+  PolarMap map = PolarMap::make(grid, 3);
+  const Inside inside(lens, grid);
+  double measured_sr = 0;
+  std::size_t bin = 0;
+  for (int ring = 0; ring < grid.rings; ++ring)
+    for (int sector = 0; sector < grid.sectors; ++sector, ++bin) {
+      const double received_sr = sums.solid_angle_sr[bin];
+      measured_sr += received_sr;
+      // A bin that was all seen keeps its own solid angle: what the division of pixels errs by is no light.
+      if (!(received_sr > 0 && inside(ring, sector)))
+        map.solid_angle_sr[bin] = static_cast<float>(received_sr);
+      for (int c = 0; c < 3; ++c)
+        map.plane(c)[bin] =
+            received_sr > 0 ? static_cast<float>(sums.flux[bin][static_cast<std::size_t>(c)] / received_sr)
+                            : 0.0F;
+    }
   map.coverage = static_cast<float>(measured_sr / (4 * kPi));
   return map;
 }
@@ -161,7 +206,7 @@ Result<PolarMap> polar_map_from_picture(const RadiancePicture& picture, const Le
       ++clipped_pixels;
     }
   if (!any) return Error{ErrorKind::bad_input, "lens.center: no pixel of the image sees the field of view"};
-  PolarMap map = map_of(sums, grid);
+  PolarMap map = map_of(sums, lens, grid);
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t bin = 0; bin < grid.size(); ++bin)
       map.peak[c * grid.size() + bin] = std::max(peak[c][bin], map.radiance[c * grid.size() + bin]);

@@ -26,8 +26,10 @@ Lens shrunk(const Lens& lens, int factor);
 
 // A picture as a map of three channels over grid, turned upright by the lens's zenith. For pictures once in a while, not
 // for frames: each pixel's solid angle, exact, is divided among the bins it looks into, in parts that are small beside
-// a bin. A bin inside the field so has its own solid angle within a few percent (ten for the wedges at the pole), one that the field's border cuts the part
-// that was seen, and solid angle × radiance summed over the map is that summed over the pixels, vignetting divided out.
+// a bin. A bin wholly inside the field has its own solid angle and the mean radiance of its parts, so that an even sky stays
+// even; one that the border of field or picture cuts has the solid angle that was seen of it. Solid angle × radiance of a
+// bin is that of the pixels in it, vignetting divided out, as far as the parts fill it: half a percent or so, a few at
+// the pole.
 // Bins that no pixel sees are black, with solid angle 0. Of flat only the vignetting is used. Light beyond theta_max of the grid is left out.
 // bad_input: the picture's size is not the lens's, no pixel sees the field, or flat does not fit the lens.
 Result<PolarMap> polar_map_from_picture(const RadiancePicture& picture, const Lens& lens,

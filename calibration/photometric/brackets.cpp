@@ -294,10 +294,11 @@ Result<BracketFit> fit_brackets(std::vector<Photograph> photographs, BracketSolv
   return fit;
 }
 
-void scale_luminance(BracketFit& fit, double scale) {
+Status scale_luminance(BracketFit& fit, double scale) {
   for (auto& point : std::get<PiecewiseLinearResponse>(fit.response.model).points)
     point.luminance_cd_m2 *= scale;
   fit.scale *= scale;
+  return check(fit.response);
 }
 
 std::string channel_warning(const BracketFit& fit) {

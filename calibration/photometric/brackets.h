@@ -54,8 +54,9 @@ struct BracketFit {
 // apertures or ISO, codes that do not follow the exposures.
 Result<BracketFit> fit_brackets(std::vector<Photograph> photographs, BracketSolver solver);
 
-// Multiplies all luminances by what a meter says they are too small by.
-void scale_luminance(BracketFit& fit, double scale);
+// Multiplies all luminances by what a meter says they are too small by. bad_input: then they are
+// out of the range that responses have; fit is scaled all the same.
+Status scale_luminance(BracketFit& fit, double scale);
 
 // A line for a person where red's or blue's curve is not green's, which the response is; else empty.
 std::string channel_warning(const BracketFit& fit);

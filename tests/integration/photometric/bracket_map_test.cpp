@@ -189,6 +189,11 @@ TEST_F(Room, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
   refused({"--lens", lens, "--map", path("response.json")}, 2, "name one file");
   refused({"--lens", lens, "--map", lens}, 2, "is also the input");
   refused({"--lens", lens, "--map", path("map.exr"), "--scale", "0"}, 2, "--scale");
+  refused({"--scale", "1e-7"}, 2, "allowed 1e-6 to 1e6");
+  refused({"--scale", "1e7"}, 2, "allowed 1e-6 to 1e6");
+  refused({"--radiance", path("./response.json")}, 2, "--radiance and --out name one file");
+  refused({"--lens", lens, "--radiance", path("map.exr"), "--map", path("./map.exr")}, 2,
+          "--map and --radiance name one file");
   refused({"--lens", path("none.json"), "--map", path("map.exr")}, 3, "none.json");
   refused({"--lens", lens_file(400), "--map", path("map.exr")}, 3,
           "lens.image_size = 400x400: allowed that of the photographs, 800x800");
