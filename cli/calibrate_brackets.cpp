@@ -17,6 +17,7 @@
 #include "interface/environment_io.h"
 #include "interface/exr_file.h"
 #include "interface/option_range.h"
+#include "interface/printable.h"
 #include "interface/same_file.h"
 
 namespace lightwell::cli {
@@ -137,7 +138,28 @@ Result<std::vector<calibration::Photograph>> read_all(const Options& o) {
     photographs.push_back(*std::move(photograph));
     progress.done(i + 1);
   }
+  warn_of_exif(photographs);
   return photographs;
+}
+
+// A common factor (a filter, a clock) changes no curve; other ratios do, and a wrong power of all of them foretells the
+// photographs as well as the right one: only the file's own word can tell.
+void warn_of_exif(const std::vector<calibration::Photograph>& photographs) {
+  constexpr double kMost = 1.25;  // EXIF's times are nominal: 1/60 for 1/64
+  const calibration::Photograph* first = nullptr;
+  for (const auto& p : photographs) {
+    if (!p.exif_exposure_s) continue;
+    if (first == nullptr) first = &p;
+    const double stated = p.exposure_s / first->exposure_s,
+                 own = *p.exif_exposure_s / *first->exif_exposure_s;
+    if (stated < kMost * own && own < kMost * stated) continue;
+    std::fprintf(stderr,
+                 "lightwell: --exposures gives %s %.4g times the exposure of %s, its EXIF data %.4g times: "
+                 "the curve is "
+                 "wrong if EXIF is right\n",
+                 printable(p.file).c_str(), stated, printable(first->file).c_str(), own);
+    return;
+  }
 }
 
 std::string percent(const std::optional<double>& error) {

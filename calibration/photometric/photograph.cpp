@@ -99,7 +99,8 @@ Result<Photograph> read_photograph(const std::filesystem::path& file, double exp
   shrink_into(out, *picture, shrink);
   const std::unique_ptr<ExifData, Release> exif(exif_data_new_from_data(
       reinterpret_cast<const unsigned char*>(bytes->data()), static_cast<unsigned>(bytes->size())));
-  out.exposure_s = exposure_s > 0 ? exposure_s : exif_number(exif.get(), EXIF_TAG_EXPOSURE_TIME).value_or(0);
+  out.exif_exposure_s = exif_number(exif.get(), EXIF_TAG_EXPOSURE_TIME);
+  out.exposure_s = exposure_s > 0 ? exposure_s : out.exif_exposure_s.value_or(0);
   if (!(out.exposure_s > 0))
     return Error{ErrorKind::bad_input,
                  out.file + ": has no exposure time in its EXIF data: give --exposures"};

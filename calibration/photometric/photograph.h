@@ -24,6 +24,7 @@ struct Photograph {
   std::vector<std::uint8_t>
       uneven;  // [height][width] of picture: the square's codes differ by more than by noise
   double exposure_s = 0;
+  std::optional<double> exif_exposure_s;  // what the file itself says, also where that was not taken
   std::optional<double> f_number, iso;
 };
 

@@ -145,5 +145,27 @@ TEST_F(BracketMerge, PhotographsOfAnotherApertureOrIsoAreRefused) {
   expect_refused(command(file(2, 5.6, 400)), 3, "p1.jpg: ISO = 100: allowed 400, that of ", "response.json");
 }
 
+TEST_F(BracketMerge, ExposuresThatContradictExifAreDoubtedAloud) {
+  std::vector<std::string> words = {"brackets"};
+  for (int number = 0; number < 3; ++number) {
+    const std::string picture = jpeg(ramp, seconds(number));
+    words.push_back(
+        write("p" + std::to_string(number) + ".jpg",
+              picture.substr(0, 2) + exif_segment(seconds(number), 5.6, 100) + picture.substr(2)));
+  }
+  const auto stated = [&](double power, double factor) {
+    std::string list;
+    for (int number = 0; number < 3; ++number)
+      list += (number == 0 ? "" : ",") + std::to_string(factor * std::pow(seconds(number), power));
+    std::vector<std::string> all = words;
+    all.insert(all.end(), {"--exposures", list, "--out", path("response.json")});
+    return calibrate(all);
+  };
+  EXPECT_THAT(stated(2, 1).err, testing::HasSubstr("its EXIF data"));
+  const auto filtered = stated(1, 0.5);  // a common factor is a filter
+  EXPECT_EQ(filtered.exit_code, 0);
+  EXPECT_EQ(filtered.err, "");
+}
+
 }  // namespace
 }  // namespace lightwell
