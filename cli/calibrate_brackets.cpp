@@ -123,25 +123,6 @@ Result<std::optional<calibration::BracketMap>> write(const Options& o,
   return map;
 }
 
-Result<std::vector<calibration::Photograph>> read_all(const Options& o) {
-  if (!o.exposures.empty() && o.exposures.size() != o.images.size())
-    return usage("--exposures: " + std::to_string(o.exposures.size()) +
-                 " values: allowed one for each of the " + std::to_string(o.images.size()) + " photographs");
-  std::vector<calibration::Photograph> photographs;
-  Progress progress(o.images.size());
-  for (std::size_t i = 0; i < o.images.size(); ++i) {
-    if (!o.exposures.empty() && !(o.exposures[i] > 0 && o.exposures[i] < 1e5))
-      return usage("--exposures: allowed seconds above 0, below 1e5");
-    auto photograph =
-        calibration::read_photograph(o.images[i], o.exposures.empty() ? 0 : o.exposures[i], kShrink);
-    if (!photograph) return photograph.error();
-    photographs.push_back(*std::move(photograph));
-    progress.done(i + 1);
-  }
-  warn_of_exif(photographs);
-  return photographs;
-}
-
 // A common factor (a filter, a clock) changes no curve; other ratios do, and a wrong power of all of them foretells the
 // photographs as well as the right one: only the file's own word can tell.
 void warn_of_exif(const std::vector<calibration::Photograph>& photographs) {
@@ -160,6 +141,25 @@ void warn_of_exif(const std::vector<calibration::Photograph>& photographs) {
                  printable(p.file).c_str(), stated, printable(first->file).c_str(), own);
     return;
   }
+}
+
+Result<std::vector<calibration::Photograph>> read_all(const Options& o) {
+  if (!o.exposures.empty() && o.exposures.size() != o.images.size())
+    return usage("--exposures: " + std::to_string(o.exposures.size()) +
+                 " values: allowed one for each of the " + std::to_string(o.images.size()) + " photographs");
+  std::vector<calibration::Photograph> photographs;
+  Progress progress(o.images.size());
+  for (std::size_t i = 0; i < o.images.size(); ++i) {
+    if (!o.exposures.empty() && !(o.exposures[i] > 0 && o.exposures[i] < 1e5))
+      return usage("--exposures: allowed seconds above 0, below 1e5");
+    auto photograph =
+        calibration::read_photograph(o.images[i], o.exposures.empty() ? 0 : o.exposures[i], kShrink);
+    if (!photograph) return photograph.error();
+    photographs.push_back(*std::move(photograph));
+    progress.done(i + 1);
+  }
+  warn_of_exif(photographs);
+  return photographs;
 }
 
 std::string percent(const std::optional<double>& error) {
