@@ -184,6 +184,11 @@ std::vector<Row> rows_of(const Problem& problem, const Options& options) {
   const SolvedLens solved = solved_by_us(*ours);
   std::vector<Case> cases;
   cases.push_back(judged("Lightwell", solved, problem, ours->lens, [&] { (void)calibrate(); }));
+  cases.back().values.emplace_back("accepted_rms_px", ours->rms_px);
+  cases.back().values.emplace_back("views", static_cast<double>(ours->views.size()));
+  cases.back().values.emplace_back(
+      "views_used", static_cast<double>(std::count_if(ours->views.begin(), ours->views.end(),
+                                                      [](const auto& view) { return view.used; })));
   if (problem.truth)  // after pictures were read, their memory is what is measured
     cases.back().values.emplace_back("peak_memory_mb", peak_memory_mb([&] { (void)calibrate(); }));
   for (const bool recompute : {false, true})

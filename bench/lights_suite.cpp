@@ -13,14 +13,14 @@
 #include <vector>
 
 #include "bench/row_column_inversion.h"
-#include "lighting/clustering.h"
-#include "lighting/evaluate.h"
-#include "lighting/fir_design.h"
-#include "lighting/halton.h"
-#include "lighting/light_filter.h"
+#include "lighting/decomposition/clustering.h"
+#include "lighting/evaluation/evaluate.h"
 #include "lighting/light_pipeline.h"
-#include "lighting/relaxation.h"
-#include "lighting/ring_sampling.h"
+#include "lighting/sampling/halton.h"
+#include "lighting/sampling/relaxation.h"
+#include "lighting/sampling/ring_sampling.h"
+#include "lighting/temporal/fir_design.h"
+#include "lighting/temporal/light_filter.h"
 
 namespace lightwell::bench {
 namespace {

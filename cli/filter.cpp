@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
-#include "lighting/fir_design.h"
+#include "lighting/temporal/fir_design.h"
 
 namespace lightwell::cli {
 namespace {

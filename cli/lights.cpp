@@ -18,7 +18,7 @@
 #include "interface/option_range.h"
 #include "interface/printable.h"
 #include "interface/same_file.h"
-#include "lighting/decompose.h"
+#include "lighting/decomposition/decompose.h"
 #include "lighting/lat_long_image.h"
 
 namespace lightwell::cli {

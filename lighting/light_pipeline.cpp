@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "lighting/azimuth_seam.h"
-#include "lighting/clustering.h"
-#include "lighting/fir_design.h"
-#include "lighting/halton.h"
-#include "lighting/light_arrays.h"
-#include "lighting/light_filter.h"
-#include "lighting/relaxation.h"
-#include "lighting/ring_distribution.h"
-#include "lighting/ring_sampling.h"
+#include "lighting/decomposition/clustering.h"
+#include "lighting/sampling/azimuth_seam.h"
+#include "lighting/sampling/halton.h"
+#include "lighting/sampling/light_arrays.h"
+#include "lighting/sampling/relaxation.h"
+#include "lighting/sampling/ring_distribution.h"
+#include "lighting/sampling/ring_sampling.h"
+#include "lighting/temporal/fir_design.h"
+#include "lighting/temporal/light_filter.h"
 
 namespace lightwell {
 namespace {

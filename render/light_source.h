@@ -9,7 +9,7 @@
 #include <string>
 
 #include "interface/dds_topics.h"
-#include "lighting/decompose.h"
+#include "lighting/decomposition/decompose.h"
 #include "lighting/lat_long_image.h"
 #include "lighting/light_set.h"
 

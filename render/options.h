@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lighting/decompose.h"
+#include "lighting/decomposition/decompose.h"
 #include "lighting/light_set.h"
 #include "render/frame_name.h"
 #include "render/tone_mapper.h"

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/detection/corner_grid.h"
+#include "lighting/median.h"
 
 namespace lightwell::calibration {
 namespace {
@@ -75,10 +76,7 @@ double median_check_px(const CornerGrid& grid) {
   for (const auto& [place, corner] : grid.corners)
     if (const auto next = grid.corners.find({place.first + 1, place.second}); next != grid.corners.end())
       ways.push_back(cv::norm(next->second.pixel - corner.pixel));
-  if (ways.empty()) return 0;
-  const auto middle = ways.begin() + static_cast<std::ptrdiff_t>(ways.size() / 2);
-  std::nth_element(ways.begin(), middle, ways.end());
-  return *middle;
+  return median(std::move(ways));
 }
 
 // OpenCV's two searches, at several scales. They find boards of which a corner of the grid is missed, but take minutes

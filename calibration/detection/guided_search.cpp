@@ -12,6 +12,8 @@
 #include "calibration/detection/corner_refinement.h"
 #include "calibration/lens/lens_adjustment.h"
 #include "calibration/lens/lens_start.h"
+#include "calibration/lens/target_pose.h"
+#include "lighting/lens.h"
 
 namespace lightwell::calibration {
 namespace {
@@ -128,8 +130,8 @@ bool rows_fall(const Board& board, const std::vector<Correspondence>& found) {
                      [&](const Correspondence& p) { return p.target_mm.y() < -board.pitch_mm / 4; });
 }
 
-}  // namespace
-
+// Corners that the picture shows where the lens puts them, no further than reach_mm from one that was found.
+// found: at least one; pose: of the board, from them
 std::vector<Correspondence> corners_where_expected(const cv::Mat& grey, const Board& board, const Lens& lens,
                                                    const TargetPose& pose,
                                                    const std::vector<Correspondence>& found,
@@ -161,6 +163,8 @@ std::vector<Correspondence> corners_where_expected(const cv::Mat& grey, const Bo
   }
   return out;
 }
+
+}  // namespace
 
 std::vector<Correspondence> with_neighbours(const cv::Mat& grey, const Board& board,
                                             std::vector<Correspondence> found) {

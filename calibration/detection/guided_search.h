@@ -6,21 +6,13 @@
 #include <vector>
 
 #include "calibration/detection/board.h"
-#include "calibration/lens/target_pose.h"
-#include "lighting/lens.h"
+#include "calibration/lens/correspondences.h"
 
 namespace lightwell::calibration {
 
-// Corners that a picture shows where a lens puts them, beside those that were found. Each is borne out by the picture:
-// edges meet there, found alike in two windows, and two light and two dark quadrants alternate as on the board.
-// found: at least one; pose: of the board, from them
-// reach_mm: how far from one that was found; where the lens is a guess, to the next corners only
-std::vector<Correspondence> corners_where_expected(const cv::Mat& grey, const Board& board, const Lens& lens,
-                                                   const TargetPose& pose,
-                                                   const std::vector<Correspondence>& found, double reach_mm);
-
 // What was found and what hangs together with it: a lens is fitted to this one picture, its next corners are looked for
-// where it puts them, and so on. found: as corners_of has them; returned alone where there are too few for a lens.
+// where it puts them, and so on. Each is borne out by the picture: edges meet there, found alike in two windows, and two
+// light and two dark quadrants alternate as on the board. found: as corners_of has them; returned alone where there are too few for a lens.
 std::vector<Correspondence> with_neighbours(const cv::Mat& grey, const Board& board,
                                             std::vector<Correspondence> found);
 

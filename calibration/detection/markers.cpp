@@ -11,6 +11,7 @@
 
 #include "calibration/detection/april_tags.h"
 #include "calibration/detection/corner_refinement.h"
+#include "lighting/median.h"
 
 namespace lightwell::calibration {
 namespace {
@@ -170,10 +171,7 @@ double disorder(const Markers& markers, const CharucoLayout& layout) {
       off.push_back(cv::norm(expected - cv::Point2d(centre(markers.corners[j]))) / pitch_px);
     }
   }
-  if (off.empty()) return std::numeric_limits<double>::max();
-  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-  std::nth_element(off.begin(), middle, off.end());
-  return *middle;
+  return median(std::move(off), std::numeric_limits<double>::max());
 }
 
 // How far the markers' corners are from the check's that they surround, along the less way; h: near one of them.

@@ -11,6 +11,7 @@
 #include "calibration/lens/lens_start.h"
 #include "calibration/lens/repeated_views.h"
 #include "calibration/lens/view_geometry.h"
+#include "lighting/median.h"
 
 namespace lightwell::calibration {
 namespace {
@@ -232,7 +233,7 @@ void account_for_walls(LensCalibration& c, std::vector<PosedView> views) {
   options.walls = false;
   if (!(adjust(lens, views, options) >= 0)) return;
   const Eigen::Matrix<double, 8, 1> shift = change_of(c.lens, lens);
-  LensConstraint constraint{least.theta_rad, 0};
+  LensConstraint constraint{least.theta_rad, 0, shift};
   for (Eigen::Index i = 0; i < 8; ++i)
     if (c.covariance(i, i) > 0)
       constraint.shift_sigma =
@@ -271,7 +272,7 @@ Result<LensCalibration> concluded(Solution& s, const std::optional<TargetShape>&
   out.freedom = selection.freedom;
   out.held_out_rms_px = out.freedom.coefficients == selected ? selection.held_out_rms_px
                                                              : held_out_rms_px(out.lens, views, out.freedom);
-  out.covariance = out.unshifted_covariance = *covariance;
+  out.covariance = *covariance;
   account_for_walls(out, views);
   take_poses(s.judged, views);
   constexpr double kLargestFocalError = 0.05;

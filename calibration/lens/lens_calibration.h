@@ -36,6 +36,7 @@ struct LensConstraint {
   // How far that moves the lens from where the points alone would put it: the most of a parameter, in standard deviations
   // of what they say. The covariance has this shift in it, as if it were an error of one standard deviation.
   double shift_sigma = 0;
+  Eigen::Matrix<double, 8, 1> shift = Eigen::Matrix<double, 8, 1>::Zero();  // in the covariance's order
 };
 
 struct LensCalibration {
@@ -43,8 +44,7 @@ struct LensCalibration {
   double supported_theta_rad =
       0;  // the largest angle of a point that counts; beyond it the lens is extrapolated
   LensFreedom freedom;
-  Eigen::Matrix<double, 8, 8> covariance;            // fx, fy, cx, cy, k1 … k4; zero rows for what is held
-  Eigen::Matrix<double, 8, 8> unshifted_covariance;  // the same without a constraint's shift
+  Eigen::Matrix<double, 8, 8> covariance;  // fx, fy, cx, cy, k1 … k4; zero rows for what is held
   std::optional<LensConstraint> constraint;
   double rms_px = 0;  // √mean(du² + dv²) over the points that count
   // The same for views held out, in at most five parts, each once: a lens of this freedom fitted to the others, the

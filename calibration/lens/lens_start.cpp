@@ -9,6 +9,7 @@
 #include <random>
 
 #include "calibration/lens/target_pose.h"
+#include "lighting/median.h"
 
 namespace lightwell::calibration {
 namespace {

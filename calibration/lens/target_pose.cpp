@@ -8,6 +8,8 @@
 #include <limits>
 #include <random>
 
+#include "lighting/median.h"
+
 namespace lightwell::calibration {
 namespace {
 
@@ -136,13 +138,6 @@ std::vector<double> errors_px(const Lens& lens, const TargetPose& pose,
   for (const auto& p : points)
     errors.push_back((lens.project(rotation * p.target_mm + pose.translation_mm) - p.pixel).norm());
   return errors;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 std::optional<TargetPose> pose_from_rays(const Lens& lens, std::span<const Correspondence> points) {

@@ -27,7 +27,6 @@ Eigen::Matrix3d cross_matrix(const Vec3d& v);
 // Pixel error of every point: |projection − pixel|.
 std::vector<double> errors_px(const Lens& lens, const TargetPose& pose,
                               std::span<const Correspondence> points);
-double median(std::vector<double> values);  // 0 of none
 
 // The target's pose by direct linear transformation on rays instead of image points, so that points behind the
 // image plane count like any other. Flat and solid targets; points: at least 4 of a flat one, no three on a

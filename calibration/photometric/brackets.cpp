@@ -10,6 +10,7 @@
 
 #include "calibration/photometric/bracket_merge.h"
 #include "interface/response_json.h"
+#include "lighting/median.h"
 
 namespace lightwell::calibration {
 namespace {
@@ -164,11 +165,9 @@ Response as_response(const std::vector<double>& exposures, double level_cd_m2, d
   return response;
 }
 
-std::optional<double> median_of(std::vector<float>& values) {
+std::optional<double> median_if_any(std::vector<float> values) {
   if (values.empty()) return std::nullopt;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return static_cast<double>(*middle);
+  return median(std::move(values));
 }
 
 double reference_of(const std::vector<const Photograph*>& photos) {
@@ -245,11 +244,11 @@ Status foretell(const std::vector<const Photograph*>& all, const std::array<Comp
       }
       errors.insert(errors.end(), own.begin(), own.end());
       const std::size_t count = own.size();
-      fit.predictions.push_back({p.file, p.exposure_s, median_of(own), count});
+      fit.predictions.push_back({p.file, p.exposure_s, median_if_any(std::move(own)), count});
     }
   }
-  fit.median_error = median_of(errors);
-  for (std::size_t c = 0; c < 3; ++c) fit.channel_median_error[c] = median_of(of_channel[c]);
+  fit.median_error = median_if_any(std::move(errors));
+  for (std::size_t c = 0; c < 3; ++c) fit.channel_median_error[c] = median_if_any(std::move(of_channel[c]));
   return {};
 }
 
@@ -289,7 +288,7 @@ Result<BracketFit> fit_brackets(std::vector<Photograph> photographs, BracketSolv
     std::vector<float> spread;
     for (std::size_t z = 32; z < 224; ++z)
       spread.push_back(static_cast<float>(std::abs((*curve)[c][z] / (*curve)[kGreen][z] - 1)));
-    fit.channel_spread[c] = *median_of(spread);
+    fit.channel_spread[c] = median(std::move(spread));
   }
   return fit;
 }

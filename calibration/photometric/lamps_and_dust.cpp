@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "lighting/median.h"
+
 namespace lightwell::calibration {
 namespace {
 
@@ -19,13 +21,6 @@ constexpr int kReach = 2;               // of a square: five by five
 constexpr double kFewestInSquare = 12;  // at the border of the field
 constexpr int kRounds = 3;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // no sample here
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double spread(std::vector<double> values) {
   for (double& v : values) v = std::abs(v);

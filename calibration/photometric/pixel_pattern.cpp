@@ -7,6 +7,8 @@
 #include <limits>
 #include <optional>
 
+#include "lighting/median.h"
+
 namespace lightwell::calibration {
 namespace {
 
@@ -62,13 +64,6 @@ Estimate with_gain(const std::vector<PixelReading>& readings, const Response& re
   return e;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return kNever;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 PixelPattern fit_pattern(const std::vector<std::vector<PixelReading>>& readings, const Response& response) {
@@ -86,7 +81,7 @@ PixelPattern fit_pattern(const std::vector<std::vector<PixelReading>>& readings,
   // A gain for a few pixels only would be no flat field.
   std::size_t read = 0;
   for (const auto& r : readings) read += !r.empty();
-  out.gain_sigma = 2 * noise.size() > read ? median(std::move(noise)) : kNever;
+  out.gain_sigma = 2 * noise.size() > read ? median(std::move(noise), kNever) : kNever;
   out.gain_rms = std::isfinite(out.gain_sigma) ? 1.4826 * median(std::move(sizes)) : 0;  // robust
   const bool supported = out.gain_rms * out.gain_rms > 2 * out.gain_sigma * out.gain_sigma;
   if (supported) out.gain.assign(readings.size(), 1);

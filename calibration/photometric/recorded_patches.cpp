@@ -8,6 +8,7 @@
 #include <set>
 
 #include "calibration/photometric/csv_table.h"
+#include "lighting/median.h"
 
 namespace lightwell::calibration {
 namespace {
@@ -106,12 +107,6 @@ Result<std::vector<Spot>> spots_of(const KnownPatch& patch, std::size_t index, c
     spots.push_back(std::move(spot));
   }
   return spots;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Without the pixels that do not look like the others.

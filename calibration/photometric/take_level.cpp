@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <vector>
 
+#include "lighting/median.h"
+
 namespace lightwell::calibration {
 namespace {
 
@@ -37,9 +39,7 @@ std::vector<double> levels(const MeanFrame& mean, const Lens& lens) {
   std::vector<double> out;
   for (std::vector<double>& of_colour : codes) {
     if (of_colour.empty()) continue;
-    const auto middle = of_colour.begin() + static_cast<std::ptrdiff_t>(of_colour.size() / 2);
-    std::nth_element(of_colour.begin(), middle, of_colour.end());
-    out.push_back(*middle);
+    out.push_back(median(std::move(of_colour)));
   }
   std::sort(out.begin(), out.end());
   return out;

@@ -10,6 +10,8 @@
 #include <cstdio>
 #include <map>
 
+#include "lighting/median.h"
+
 namespace lightwell::calibration {
 namespace {
 
@@ -74,12 +76,6 @@ void look(const TurnedTake& take, const MeanFrame* black, const Lens& lens, cons
     }
   for (const auto& [cell, glimpse] : seen)
     if (glimpse.pixels >= static_cast<double>(kFewestPixels)) scene[cell].glimpses.push_back(glimpse);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 struct Fit {

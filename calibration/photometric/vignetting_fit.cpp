@@ -8,16 +8,12 @@
 #include <map>
 #include <set>
 
+#include "lighting/median.h"
+
 namespace lightwell::calibration {
 namespace {
 
 constexpr double kTukey = 4.685;  // 95 % efficient where the noise is normal
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 constexpr double kLeastLight = 0.03;  // of either factor: a first step may go too far
 

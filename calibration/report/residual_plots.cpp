@@ -8,6 +8,7 @@
 
 #include "calibration/report/json_access.h"
 #include "calibration/report/svg_plot.h"
+#include "lighting/median.h"
 
 namespace lightwell::calibration {
 namespace {
@@ -51,9 +52,7 @@ double arrow_gain(const Lens& lens, const std::vector<ViewArrows>& views) {
     for (const Arrow& a : view.arrows)
       if (a.counts) lengths.push_back(std::hypot(a.dx, a.dy));
   if (lengths.empty()) return 0;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return 0.02 * std::max(lens.image_size[0], lens.image_size[1]) / std::max(*middle, 1e-6);
+  return 0.02 * std::max(lens.image_size[0], lens.image_size[1]) / std::max(median(std::move(lengths)), 1e-6);
 }
 
 std::string place(double v) {

@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "daemon/clock.h"
-#include "lighting/decompose.h"
+#include "lighting/decomposition/decompose.h"
 
 namespace lightwell {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "interface/environment_io.h"
 #include "interface/light_set_io.h"
-#include "lighting/evaluate.h"
+#include "lighting/evaluation/evaluate.h"
 #include "tests/integration/chain/chain.h"
 
 namespace lightwell::test {

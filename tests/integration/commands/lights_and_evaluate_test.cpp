@@ -9,7 +9,7 @@
 
 #include "interface/atomic_file.h"
 #include "interface/light_set_io.h"
-#include "lighting/decompose.h"
+#include "lighting/decomposition/decompose.h"
 #include "lighting/lat_long_image.h"
 #include "tests/integration/commands/command_fixture.h"
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "interface/environment_io.h"
-#include "lighting/decompose.h"
-#include "lighting/evaluate.h"
+#include "lighting/decomposition/decompose.h"
+#include "lighting/evaluation/evaluate.h"
 #include "lighting/lat_long_image.h"
 
 namespace lightwell {

@@ -131,7 +131,9 @@ WallDraws draws_at_the_wall(const Lens& truth) {
       return count / static_cast<double>(directions.size());
     };
     out.with_shift += inside(found->covariance);
-    out.without_shift += inside(found->unshifted_covariance);
+    Eigen::Matrix<double, 8, 8> without = found->covariance;
+    if (found->constraint) without -= found->constraint->shift * found->constraint->shift.transpose();
+    out.without_shift += inside(without);
   }
   out.held /= kDraws;
   out.with_shift /= kDraws;

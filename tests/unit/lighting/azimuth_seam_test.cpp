@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "lighting/azimuth_seam.h"
+#include "lighting/sampling/azimuth_seam.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "lighting/halton.h"
-#include "lighting/ring_sampling.h"
+#include "lighting/sampling/halton.h"
+#include "lighting/sampling/ring_sampling.h"
 #include "tests/support/sampling_maps.h"
 
 namespace lightwell {

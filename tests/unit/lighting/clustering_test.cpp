@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "lighting/clustering.h"
+#include "lighting/decomposition/clustering.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "lighting/decompose.h"
+#include "lighting/decomposition/decompose.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <tuple>
 
-#include "lighting/evaluate.h"
+#include "lighting/evaluation/evaluate.h"
 
 namespace lightwell {
 namespace {

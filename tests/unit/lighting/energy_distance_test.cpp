@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "lighting/energy_distance.h"
+#include "lighting/decomposition/energy_distance.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "lighting/atoms.h"
-#include "lighting/moment_match.h"
-#include "lighting/split_tree.h"
+#include "lighting/decomposition/atoms.h"
+#include "lighting/decomposition/moment_match.h"
+#include "lighting/decomposition/split_tree.h"
 
 namespace lightwell {
 namespace {

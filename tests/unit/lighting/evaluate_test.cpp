@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "lighting/evaluate.h"
+#include "lighting/evaluation/evaluate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "lighting/light_filter.h"
+#include "lighting/temporal/light_filter.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "lighting/fir_design.h"
+#include "lighting/temporal/fir_design.h"
 
 namespace lightwell {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "lighting/light_kernel/kernel.h"
+#include "lighting/sampling/light_kernel/kernel.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <random>
 #include <vector>
 
-#include "lighting/azimuth_seam.h"
-#include "lighting/ring_distribution.h"
-#include "lighting/ring_sampling.h"
+#include "lighting/sampling/azimuth_seam.h"
+#include "lighting/sampling/ring_distribution.h"
+#include "lighting/sampling/ring_sampling.h"
 
 namespace lightwell {
 namespace {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lighting/concentric_map.h"
-#include "lighting/halton.h"
-#include "lighting/relaxation.h"
+#include "lighting/sampling/concentric_map.h"
+#include "lighting/sampling/halton.h"
+#include "lighting/sampling/relaxation.h"
 
 namespace lightwell {
 namespace {

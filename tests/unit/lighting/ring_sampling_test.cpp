@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "lighting/ring_sampling.h"
+#include "lighting/sampling/ring_sampling.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "lighting/halton.h"
+#include "lighting/sampling/halton.h"
 #include "tests/support/sampling_maps.h"
 
 namespace lightwell {
