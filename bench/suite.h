@@ -16,6 +16,9 @@ struct Options {
   double seconds_per_case = 1;  // time spent on each case, at least Turns::least_runs
   std::string
       data_folder;  // reference data that is not part of the project; empty: what needs it is left out
+  std::string only_setting;  // coherence: only settings (sequences) whose name contains this; empty: all
+  std::string only_name;     // coherence: only rows whose name contains this; empty: all
+  int lights = 64;           // coherence: lights of each set
 };
 
 // How cases take turns.

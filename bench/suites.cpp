@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "bench/coherence.h"
 #include "bench/lights_suite.h"
 #include "bench/suite.h"
 
@@ -41,10 +42,8 @@ std::vector<Row> lights_rows(const Options& options) {
 
 const std::vector<Suite>& suites() {
   static const std::vector<Suite> all = {
-      {"frame", frame_suite},
-      {"lights", lights_rows},
-      {"lens", lens_suite},
-      {"response", response_suite},
+      {"frame", frame_suite},       {"lights", lights_rows},        {"lens", lens_suite},
+      {"response", response_suite}, {"coherence", coherence_suite},
   };
   return all;
 }

@@ -62,6 +62,13 @@ Command add_bench(CLI::App& app) {
   command->add_option("--seconds", asked->options.seconds_per_case, "Time for each case")
       ->check(numbers_from(0, 600, "0 to 600 seconds"))
       ->capture_default_str();
+  command->add_option("--only", asked->options.only_setting,
+                      "Of the coherence suite, sequences whose name contains this");
+  command->add_option("--followers", asked->options.only_name,
+                      "Of the coherence suite, followers whose name contains this");
+  command->add_option("--lights", asked->options.lights, "Of the coherence suite, lights of a set")
+      ->check(whole_numbers(1, 100000))
+      ->capture_default_str();
   command->footer("Example: lightwell bench --suite frame --json out.json --svg .");
   return {command, [asked] { return run(*asked); }};
 }
