@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <sstream>
 
 #include "interface/atomic_file.h"
 #include "interface/json_fields.h"
@@ -113,6 +114,23 @@ Result<LightSet> read_light_set(const std::filesystem::path& file) {
   const auto text = read_text_file(file);
   if (!text) return text.error();
   return light_set_from_json(*text, file.string());
+}
+
+Result<std::vector<LightSet>> read_light_sets(const std::filesystem::path& file) {
+  const auto text = read_text_file(file);
+  if (!text) return text.error();
+  std::istringstream lines(*text);
+  std::vector<LightSet> sets;
+  std::size_t number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    auto set = light_set_from_json(line, file.string() + ", line " + std::to_string(number));
+    if (!set) return set.error();
+    sets.push_back(std::move(set).value());
+  }
+  if (sets.empty()) return Error{ErrorKind::bad_input, file.string() + ": holds no light set"};
+  return sets;
 }
 
 Status write_light_set(const std::filesystem::path& file, const LightSet& set) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "lighting/light_set.h"
 #include "lighting/result.h"
@@ -17,6 +18,8 @@ std::string light_set_to_json(const LightSet& set, bool one_line = false);
 Result<LightSet> light_set_from_json(const std::string& text, const std::string& name_for_errors);
 
 Result<LightSet> read_light_set(const std::filesystem::path& file);
+// One set a line, as `lightwell lights` writes of a sequence; blank lines count for nothing. An error names the line.
+Result<std::vector<LightSet>> read_light_sets(const std::filesystem::path& file);
 Status write_light_set(const std::filesystem::path& file, const LightSet& set);
 
 }  // namespace lightwell
