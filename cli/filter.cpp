@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
 
 #include "cli/command.h"
 #include "lighting/temporal/fir_design.h"
@@ -10,12 +12,17 @@
 namespace lightwell::cli {
 namespace {
 
-void print_json(const FirSpecification& asked, const FirDesign& design) {
+std::string_view name(FirPhase phase) {
+  return phase == FirPhase::linear ? "linear" : "minimum";
+}
+
+void print_json(const FirSpecification& asked, FirPhase phase, const FirDesign& design) {
   const nlohmann::ordered_json json = {{"schema", "lightwell.filter/1"},
                                        {"rate_hz", asked.rate_hz},
                                        {"pass_hz", asked.pass_hz},
                                        {"stop_hz", asked.stop_hz},
                                        {"order", asked.order},
+                                       {"phase", name(phase)},
                                        {"taps", design.taps},
                                        {"dc_gain", design.dc_gain},
                                        {"delay_frames", design.delay_frames},
@@ -29,7 +36,7 @@ void print_text(const FirSpecification& asked, const FirDesign& design) {
   std::printf("taps");
   for (const double tap : design.taps) std::printf(" %.7f", tap);
   std::printf("\nDC gain           %.9f\n", design.dc_gain);
-  std::printf("delay             %g frames, %.2f ms\n", design.delay_frames,
+  std::printf("delay             %.4g frames, %.2f ms\n", design.delay_frames,
               1000 * design.delay_frames / asked.rate_hz);
   std::printf("pass-band ripple  %.3f dB up to %g Hz\n", design.pass_ripple_db, asked.pass_hz);
   std::printf("stop band         %.2f dB down from %g Hz\n", design.stop_attenuation_db, asked.stop_hz);
@@ -40,6 +47,7 @@ void print_text(const FirSpecification& asked, const FirDesign& design) {
 Command add_filter(CLI::App& app) {
   struct Options {
     FirSpecification specification;
+    std::string phase = "linear";
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
@@ -60,12 +68,20 @@ Command add_filter(CLI::App& app) {
       ->add_option("--order", options->specification.order,
                    "Taps less one, 1 to 128; the delay is half of it")
       ->required();
+  command
+      ->add_option("--phase", options->phase,
+                   "linear: every frequency equally late; minimum: the same gains with the least delay")
+      ->capture_default_str()
+      ->type_name("PHASE");
   command->add_flag("--json", options->json, "Machine-readable result on stdout");
   return {command, [options] {
-            const auto design = design_fir(options->specification);
+            if (options->phase != "linear" && options->phase != "minimum")
+              return fail(usage("--phase is " + options->phase + ", allowed: linear, minimum"));
+            const FirPhase phase = options->phase == "linear" ? FirPhase::linear : FirPhase::minimum;
+            const auto design = design_fir(options->specification, phase);
             if (!design) return fail(design.error());
             if (options->json)
-              print_json(options->specification, *design);
+              print_json(options->specification, phase, *design);
             else
               print_text(options->specification, *design);
             return 0;

@@ -20,6 +20,7 @@
 #include "interface/same_file.h"
 #include "lighting/decomposition/decompose.h"
 #include "lighting/lat_long_image.h"
+#include "lighting/temporal/temporal_choice.h"
 
 namespace lightwell::cli {
 namespace {
@@ -46,20 +47,33 @@ struct Plan {
   bool hemisphere = true;
   double rotate_y_rad = 0;
   double rate_hz = 60;
-  TemporalFilter temporal = TemporalFilter::none;
+  TemporalChoice temporal = TemporalChoice::none;
 };
 
-Result<TemporalFilter> temporal_filter(const LightsOptions& options, Method method) {
+// Of one image there is none. Method best is steady by itself; the samplers, whose light i stays the same light,
+// can be filtered; of the others every frame stands by itself.
+Result<TemporalChoice> temporal_choice(const LightsOptions& options, Method method) {
   const bool sequence = is_numbered_sequence(options.environment);
   const bool sampled = sampler_of(method).has_value();
-  if (!options.temporal) return sequence && sampled ? TemporalFilter::fir : TemporalFilter::none;
-  if (*options.temporal == "none") return TemporalFilter::none;
-  if (*options.temporal != "fir") return usage("--temporal is " + *options.temporal + ", allowed: fir, none");
-  if (!sequence) return usage("--temporal fir needs a numbered sequence, such as 'env_%04d.exr'");
-  if (!sampled)
-    return usage(
-        "--temporal fir needs a method that keeps a light's identity from frame to frame: standard, havran");
-  return TemporalFilter::fir;
+  if (!options.temporal) {
+    if (!sequence) return TemporalChoice::none;
+    return method == Method::best ? TemporalChoice::best
+           : sampled              ? TemporalChoice::fir
+                                  : TemporalChoice::none;
+  }
+  const auto choice = temporal_choice_from_name(*options.temporal);
+  if (!choice) return usage("--temporal is " + *options.temporal + ", allowed: " + temporal_choice_names());
+  if (*choice == TemporalChoice::none) return choice.value();
+  if (!sequence)
+    return usage("--temporal " + *options.temporal + " needs a numbered sequence, such as 'env_%04d.exr'");
+  if (*choice == TemporalChoice::best && method != Method::best)
+    return usage("--temporal best is what method best does itself; with --method " +
+                 std::string(name(method)) +
+                 (sampled ? " allowed: fir, minimum-phase, one-frame, none" : " allowed: none"));
+  if (*choice != TemporalChoice::best && !sampled)
+    return usage("--temporal " + *options.temporal +
+                 " needs a method that keeps a light's identity from frame to frame: standard, havran");
+  return choice.value();
 }
 
 Result<Plan> plan_of(const LightsOptions& options) {
@@ -75,7 +89,7 @@ Result<Plan> plan_of(const LightsOptions& options) {
   if (const Status named = check_output_name(options.out); !named) return named.error();
   if (const Status other = check_output_is_no_input(options.out, {options.environment}); !other)
     return other.error();
-  const auto temporal = temporal_filter(options, plan.method);
+  const auto temporal = temporal_choice(options, plan.method);
   if (!temporal) return temporal.error();
   plan.temporal = *temporal;
   return plan;
@@ -98,37 +112,41 @@ class Decomposer {
 
   Result<LightSet> next(const PolarMap& map) {
     const auto sampler = sampler_of(plan_.method);
-    if (plan_.temporal == TemporalFilter::none || !sampler)
+    if (plan_.temporal == TemporalChoice::none || !sampler)
       return decompose(map, plan_.method, plan_.count, plan_.seed);
-    if (!pipeline_) {
-      LightPipelineOptions options;
-      options.count = plan_.count;
-      options.sampler = *sampler;
-      options.relaxed = plan_.method == Method::havran;
-      options.seed = plan_.seed;
-      options.filter = plan_.temporal;
-      options.rate_hz = plan_.rate_hz;
-      options.pass_hz =
-          plan_.rate_hz * 7 / 21;  // the paper's filter at any rate (Havran et al. 2005, section 4.2)
-      options.stop_hz = plan_.rate_hz * 9 / 21;
-      options.clusters = 0;
-      auto pipeline = LightPipeline::create(map.grid, map.channels, options);
-      if (!pipeline) return pipeline.error();
-      pipeline_.emplace(std::move(pipeline).value());
-    }
+    if (!pipeline_)
+      if (const Status status = prepare(map, *sampler); !status) return status.error();
     const auto lights = pipeline_->process(map);
     LightSet set;
     set.method = name(plan_.method);
     set.coverage = coverage_of(map.grid);
     set.lights.assign(lights.begin(), lights.end());
-    set.total_illuminance = pipeline_->total_illuminance();
+    filter_->apply(set);
     return set;
   }
-  [[nodiscard]] double delay_frames() const { return pipeline_ ? pipeline_->delay_frames() : 0; }
+  [[nodiscard]] double delay_frames() const { return filter_ ? filter_->delay_frames() : 0; }
 
  private:
+  Status prepare(const PolarMap& map, LightPipelineOptions::Sampler sampler) {
+    const auto taps = temporal_taps(plan_.temporal, plan_.rate_hz);
+    if (!taps) return taps.error();
+    LightPipelineOptions options;
+    options.count = plan_.count;
+    options.sampler = sampler;
+    options.relaxed = plan_.method == Method::havran;
+    options.seed = plan_.seed;
+    options.filter = TemporalFilter::none;
+    options.clusters = 0;
+    auto pipeline = LightPipeline::create(map.grid, map.channels, options);
+    if (!pipeline) return pipeline.error();
+    pipeline_.emplace(std::move(pipeline).value());
+    filter_.emplace(*taps, static_cast<std::size_t>(plan_.count), map.grid.theta_max_rad);
+    return {};
+  }
+
   Plan plan_;
   std::optional<LightPipeline> pipeline_;
+  std::optional<LightSetFilter> filter_;
 };
 
 void report(const LightsOptions& options, const Plan& plan, std::size_t frames, double delay_frames,
@@ -138,6 +156,7 @@ void report(const LightsOptions& options, const Plan& plan, std::size_t frames, 
                                            {"coverage", plan.hemisphere ? "hemisphere" : "sphere"},
                                            {"count", plan.count},
                                            {"frames", frames},
+                                           {"temporal", name(plan.temporal)},
                                            {"delay_frames", delay_frames},
                                            {"total_illuminance", {total[0], total[1], total[2]}},
                                            {"ms", ms},
@@ -235,8 +254,9 @@ Command add_lights(CLI::App& app) {
       ->type_name("HZ");
   command
       ->add_option("--temporal", o->temporal,
-                   "Of a sequence, fir or none: default fir for standard and havran, none for the others")
-      ->type_name("FILTER");
+                   "Of a sequence, one of: " + temporal_choice_names() +
+                       ". Default best with method best, fir with standard and havran, none with the others")
+      ->type_name("T");
   command->add_option("--out", o->out, "Light set, JSON; of a sequence one set a line")
       ->required()
       ->type_name("FILE");

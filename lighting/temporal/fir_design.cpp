@@ -7,10 +7,12 @@
 #include <cmath>
 #include <complex>
 #include <string>
+#include <utility>
 
 // After <complex>, so that liquid's complex types are C++'s.
 #include <liquid/liquid.h>
 
+#include "lighting/temporal/minimum_phase.h"
 #include "lighting/vector.h"
 
 namespace lightwell {
@@ -65,7 +67,7 @@ double fir_gain(const std::vector<double>& taps, double frequency_hz, double rat
   return std::abs(sum);
 }
 
-Result<FirDesign> design_fir(const FirSpecification& s) {
+Result<FirDesign> design_fir(const FirSpecification& s, FirPhase phase) {
   if (Status status = check(s); !status) return status.error();
   std::array<float, 4> bands = {0, static_cast<float>(s.pass_hz / s.rate_hz),
                                 static_cast<float>(s.stop_hz / s.rate_hz), 0.5f};
@@ -89,8 +91,13 @@ Result<FirDesign> design_fir(const FirSpecification& s) {
   design.taps.resize(raw.size());
   for (std::size_t i = 0; i < raw.size(); ++i)  // symmetric to the last bit
     design.taps[i] = (static_cast<double>(raw[i]) + static_cast<double>(raw[raw.size() - 1 - i])) / 2 / sum;
+  if (phase == FirPhase::minimum) {
+    auto least_delay = minimum_phase(design.taps);
+    if (!least_delay) return least_delay.error();
+    design.taps = std::move(least_delay).value();
+  }
   design.dc_gain = fir_gain(design.taps, 0, s.rate_hz);
-  design.delay_frames = s.order / 2.0;
+  design.delay_frames = phase == FirPhase::linear ? s.order / 2.0 : delay_of_slow_changes(design.taps);
   design.pass_ripple_db = 20 * std::log10(1 + largest_deviation(design.taps, 0, s.pass_hz, s.rate_hz, 1));
   design.stop_attenuation_db =
       -20 * std::log10(largest_deviation(design.taps, s.stop_hz, s.rate_hz / 2, s.rate_hz, 0));

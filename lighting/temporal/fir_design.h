@@ -8,6 +8,11 @@
 
 namespace lightwell {
 
+enum class FirPhase {
+  linear,   // every frequency is late by order / 2 frames
+  minimum,  // the same gains with the least delay (lighting/temporal/minimum_phase.h)
+};
+
 // What the temporal low-pass filter shall do, frequencies in hertz.
 struct FirSpecification {
   double rate_hz = 60;      // frames a second
@@ -16,11 +21,11 @@ struct FirSpecification {
   int order = 8;            // taps − 1
 };
 
-// A linear-phase low-pass filter and what it was measured to do.
+// A low-pass filter and what it was measured to do.
 struct FirDesign {
-  std::vector<double> taps;   // symmetric, sum 1
+  std::vector<double> taps;   // newest frame first, sum 1; symmetric where the phase is linear
   double dc_gain = 1;         // sum of the taps
-  double delay_frames = 0;    // order / 2
+  double delay_frames = 0;    // of slow changes; order / 2 where the phase is linear
   double pass_ripple_db = 0;  // largest |gain| deviation from 1 up to pass_hz, as 20 log10(1 + deviation)
   double stop_attenuation_db = 0;  // −20 log10 of the largest gain from stop_hz up
 };
@@ -33,8 +38,8 @@ Status check(const FirSpecification& specification);
 
 // Equiripple design by the Parks–McClellan exchange, equal weight on both bands, scaled to gain 1 for a
 // constant. source: Parks and McClellan 1972; Havran et al. 2005, section 3.3, whose printed taps sum to 1.09
-// Fails (usage) as check does, and (failed) where the exchange does not converge to a usable filter.
-Result<FirDesign> design_fir(const FirSpecification& specification);
+// Fails (usage) as check does, and (failed) where the exchange does not converge to a usable filter, or its zeros are not found.
+Result<FirDesign> design_fir(const FirSpecification& specification, FirPhase phase = FirPhase::linear);
 
 // |H| of symmetric or any real taps at a frequency.
 double fir_gain(const std::vector<double>& taps, double frequency_hz, double rate_hz);

@@ -7,6 +7,7 @@
 
 #include "lighting/result.h"
 #include "lighting/sampling/light_kernel/kernel.h"
+#include "lighting/temporal/minimum_phase.h"
 
 namespace lightwell {
 namespace {
@@ -14,10 +15,19 @@ namespace {
 constexpr std::array<std::vector<float> LightArrays::*, 3> kPower = {&LightArrays::r, &LightArrays::g,
                                                                      &LightArrays::b};
 
+// To the half frame that symmetric taps have exactly.
+double delay_of(std::span<const double> taps) {
+  verify_bug(!taps.empty(), "a filter needs a tap");
+  const double middle = static_cast<double>(taps.size() - 1) / 2;
+  const bool symmetric = std::equal(taps.begin(), taps.end(), taps.rbegin());
+  return symmetric ? middle : delay_of_slow_changes(taps);
+}
+
 }  // namespace
 
 LightFilter::LightFilter(std::span<const double> taps, std::size_t count, double theta_max_rad)
-    : edge_cosine_(std::cos(theta_max_rad)),
+    : delay_frames_(delay_of(taps)),
+      edge_cosine_(std::cos(theta_max_rad)),
       edge_sine_(std::sin(theta_max_rad)),
       history_(taps.size(), LightArrays(count)),
       totals_(taps.size()),
@@ -25,7 +35,6 @@ LightFilter::LightFilter(std::span<const double> taps, std::size_t count, double
       last_y_(count, 1.0f),
       last_z_(count, 0.0f),
       past_(taps.size()) {
-  verify_bug(!taps.empty(), "a filter needs a tap");
   for (const double t : taps) taps_.push_back(static_cast<float>(t));
   if (std::abs(edge_cosine_) < 1e-15)
     edge_cosine_ = 0;  // the horizon is at 0, not at cos(π/2) in floating point

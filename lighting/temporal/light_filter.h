@@ -28,15 +28,16 @@ namespace lightwell {
 // The first frame fills the history: no fade-in from black. apply allocates nothing and does not fail.
 class LightFilter {
  public:
-  // taps: newest frame first (symmetric for a linear phase), sum 1; theta_max_rad: edge of the map
+  // taps: newest frame first, of any phase, sum 1; theta_max_rad: edge of the map
   LightFilter(std::span<const double> taps, std::size_t count, double theta_max_rad);
 
-  // Takes this frame's lights, gives the filtered ones, delayed by half of the taps. Both of `count` lights;
+  // Takes this frame's lights, gives the filtered ones. Both of `count` lights;
   // out may not be in.
   void apply(const LightArrays& in, LightArrays& out) noexcept;
   void reset() noexcept;
 
-  [[nodiscard]] double delay_frames() const { return static_cast<double>(taps_.size() - 1) / 2; }
+  // By how much slow changes are late: half of the order where the taps are symmetric.
+  [[nodiscard]] double delay_frames() const { return delay_frames_; }
 
  private:
   void filter_directions(LightArrays& out) noexcept;
@@ -49,6 +50,7 @@ class LightFilter {
   }
 
   std::vector<float> taps_;
+  double delay_frames_;
   double edge_cosine_;
   double edge_sine_;
   bool filled_ = false;

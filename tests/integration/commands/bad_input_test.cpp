@@ -62,7 +62,14 @@ TEST_F(BadInput, ValuesOutOfRangeAreWrongUsage) {
   for (const char* seconds : {"0", "abc", "nan", "604801"})
     expect({"record", "--out", path("o.mkv"), "--seconds", seconds}, 2,
            "--seconds: value '" + std::string(seconds) + "', allowed above 0 to 604800");
-  expect_lights(sky, {"--count", "4", "--temporal", "best"}, 2, "fir, none");
+  expect_lights(sky, {"--count", "4", "--temporal", "iir"}, 2, "best, fir, minimum-phase, one-frame, none");
+  expect_lights(sky, {"--count", "4", "--temporal", "best"}, 2, "sequence");
+  expect_lights(path("e%d.exr"), {"--count", "4", "--method", "havran", "--temporal", "best"}, 2,
+                "allowed: fir, minimum-phase, one-frame, none");
+  expect_lights(path("e%d.exr"), {"--count", "4", "--method", "median-cut", "--temporal", "best"}, 2,
+                "allowed: none");
+  expect({"filter", "--rate", "60", "--pass", "12", "--stop", "20", "--order", "8", "--phase", "odd"}, 2,
+         "allowed: linear, minimum");
   expect_lights(sky, {"--count", "4", "--temporal", "fir"}, 2, "sequence");
   expect_lights(path("e%d.exr"), {"--count", "4", "--temporal", "fir"}, 2, "standard, havran");
   expect_lights(sky, {"--count", "4", "--sphere", "--hemisphere"}, 2, "--hemisphere");

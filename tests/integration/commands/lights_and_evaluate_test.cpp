@@ -137,6 +137,36 @@ TEST_F(Commands, TheFilterCarriesStateThroughASequence) {
   EXPECT_LT(total[6], 2 * total[0]);           // two frames after the step it is delayed by four
 }
 
+TEST_F(Commands, TemporalChoicesDelayAsTheyState) {
+  for (int frame = 1; frame <= 12; ++frame) {
+    LatLongImage image = sky(24, 12);
+    for (Rgb& pixel : image.pixels) pixel *= frame <= 5 ? 1.0f : 3.0f;
+    ASSERT_TRUE(write_environment(path("e" + std::to_string(frame) + ".exr"), image));
+  }
+  const auto totals = [&](const std::string& temporal, double* delay) {
+    const auto run = lightwell({"lights", path("e%d.exr"), "--count", "20", "--method", "standard",
+                                "--temporal", temporal, "--out", path("l.jsonl"), "--json"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(json::parse(run.out)["temporal"], temporal);
+    *delay = json::parse(run.out)["delay_frames"];
+    std::vector<double> list;
+    const auto sets = read_light_sets(path("l.jsonl"));
+    for (const LightSet& set : sets.value()) list.push_back(luminance(sum(set)));
+    return list;
+  };
+  double delay = 0;
+  const auto one = totals("one-frame", &delay);
+  EXPECT_NEAR(delay, 1, 1e-9);                      // decimals written
+  EXPECT_NEAR(one[5] / one[0], 1 + 2 * 0.4, 1e-4);  // float rounding of 20 lights
+  EXPECT_NEAR(one[8] / one[0], 3, 1e-4);
+  totals("minimum-phase", &delay);
+  EXPECT_GT(delay, 0.5);
+  EXPECT_LT(delay, 2.5);
+  const auto none = totals("none", &delay);
+  EXPECT_EQ(delay, 0);
+  EXPECT_NEAR(none[5] / none[0], 3, 1e-4);
+}
+
 TEST_F(Commands, BlackImagesGiveLightsOfNoPower) {
   ASSERT_TRUE(write_environment(path("black.exr"), {7, 5, std::vector<Rgb>(35, Rgb::Zero())}));
   for (const Method method : kMethods) {

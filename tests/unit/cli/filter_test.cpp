@@ -45,6 +45,18 @@ TEST(FilterCommand, JsonHasTapsGainDelayAndRipple) {
   EXPECT_GT(json.at("pass_ripple_db").get<double>(), 0);
 }
 
+TEST(FilterCommand, MinimumPhaseIsTheSameFilterWithLessDelay) {
+  const auto linear =
+      nlohmann::json::parse(run_filter("--rate 60 --pass 12 --stop 20 --order 16 --json").out);
+  const auto minimum = nlohmann::json::parse(
+      run_filter("--rate 60 --pass 12 --stop 20 --order 16 --phase minimum --json").out);
+  EXPECT_EQ(linear.at("phase"), "linear");
+  EXPECT_EQ(minimum.at("phase"), "minimum");
+  EXPECT_NEAR(minimum.at("stop_attenuation_db").get<double>(), linear.at("stop_attenuation_db").get<double>(),
+              0.01);  // gains agree to 1e-6
+  EXPECT_LT(minimum.at("delay_frames").get<double>(), linear.at("delay_frames").get<double>() / 2);
+}
+
 TEST(FilterCommand, ValueOutOfRangeIsUsageInOneLineThatNamesIt) {
   for (const char* arguments :
        {"--rate 0 --pass 12 --stop 20 --order 8", "--rate 60 --pass 12 --stop 30 --order 8",
