@@ -20,6 +20,7 @@
 #include "interface/same_file.h"
 #include "lighting/decomposition/decompose.h"
 #include "lighting/lat_long_image.h"
+#include "lighting/temporal/flicker_filter.h"
 #include "lighting/temporal/temporal_choice.h"
 
 namespace lightwell::cli {
@@ -36,6 +37,8 @@ struct LightsOptions {
   double rotate_y_deg = 0;
   double rate_hz = 60;
   std::optional<std::string> temporal;
+  std::optional<double> mains_hz;
+  std::optional<double> exposure_ms;
   bool json = false;
 };
 
@@ -48,6 +51,7 @@ struct Plan {
   double rotate_y_rad = 0;
   double rate_hz = 60;
   TemporalChoice temporal = TemporalChoice::none;
+  std::optional<FlickerOptions> flicker;
 };
 
 // Of one image there is none. Method best is steady by itself; the samplers, whose light i stays the same light,
@@ -92,6 +96,16 @@ Result<Plan> plan_of(const LightsOptions& options) {
   const auto temporal = temporal_choice(options, plan.method);
   if (!temporal) return temporal.error();
   plan.temporal = *temporal;
+  if ((options.mains_hz || options.exposure_ms) && !is_numbered_sequence(options.environment))
+    return usage(std::string(options.mains_hz ? "--mains" : "--exposure") +
+                 " needs a numbered sequence, such as 'env_%04d.exr'");
+  if (options.mains_hz && *options.mains_hz != 50 && *options.mains_hz != 60)
+    return usage("--mains is " + std::to_string(*options.mains_hz) + ", allowed: 50, 60 Hz");
+  if (options.exposure_ms && !options.mains_hz)
+    return usage("--exposure tells how much of the mains' flicker is averaged: it needs --mains");
+  if (options.mains_hz)
+    plan.flicker =
+        FlickerOptions{2 * *options.mains_hz, options.rate_hz, options.exposure_ms.value_or(0) / 1000};
   return plan;
 }
 
@@ -177,18 +191,26 @@ int run_sequence(const LightsOptions& options, const Plan& plan) {
   auto out = AtomicFileWriter::create(options.out);
   if (!out) return fail(out.error());
   Decomposer decomposer(plan);
+  std::optional<FlickerFilter> flicker;
   Progress progress(files->size());
   std::optional<PolarGrid> grid;
   Rgb total = Rgb::Zero();
   double ms = 0;
   for (std::size_t i = 0; i < files->size(); ++i) {
-    const auto map = read_map((*files)[i], plan);
+    auto map = read_map((*files)[i], plan);
     if (!map) return fail(map.error());
     if (grid && !(*grid == map->grid))
       return fail(
           {ErrorKind::bad_input, (*files)[i].string() + ": has another size than the frames before it"});
     grid = map->grid;
+    if (plan.flicker && !flicker) {
+      auto made = FlickerFilter::create(map->radiance.size(), *plan.flicker);
+      if (!made) return fail(made.error());
+      flicker.emplace(std::move(made).value());
+    }
     const auto begin = std::chrono::steady_clock::now();
+    if (flicker)
+      flicker->apply(static_cast<double>(i) / plan.rate_hz, plan.flicker->exposure_s, map->radiance);
     const auto set = decomposer.next(*map);
     ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     if (!set) return fail({set.error().kind, (*files)[i].string() + ": " + set.error().message});
@@ -257,6 +279,16 @@ Command add_lights(CLI::App& app) {
                    "Of a sequence, one of: " + temporal_choice_names() +
                        ". Default best with method best, fir with standard and havran, none with the others")
       ->type_name("T");
+  command
+      ->add_option("--mains", o->mains_hz,
+                   "Of a sequence: take out the flicker of lamps on mains of 50 or 60 Hz, without delay")
+      ->check(numbers_from(50, 60, "50 or 60 Hz"))
+      ->type_name("HZ");
+  command
+      ->add_option("--exposure", o->exposure_ms,
+                   "With --mains: exposure of the frames, which averages flicker; default short")
+      ->check(numbers_from(0, 1000, "0 to 1000 ms"))
+      ->type_name("MS");
   command->add_option("--out", o->out, "Light set, JSON; of a sequence one set a line")
       ->required()
       ->type_name("FILE");

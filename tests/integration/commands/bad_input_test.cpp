@@ -68,6 +68,10 @@ TEST_F(BadInput, ValuesOutOfRangeAreWrongUsage) {
                 "allowed: fir, minimum-phase, one-frame, none");
   expect_lights(path("e%d.exr"), {"--count", "4", "--method", "median-cut", "--temporal", "best"}, 2,
                 "allowed: none");
+  expect_lights(sky, {"--count", "4", "--mains", "50"}, 2, "sequence");
+  expect_lights(path("e%d.exr"), {"--count", "4", "--mains", "55"}, 2, "allowed: 50, 60 Hz");
+  expect_lights(path("e%d.exr"), {"--count", "4", "--mains", "abc"}, 2, "50 or 60 Hz");
+  expect_lights(path("e%d.exr"), {"--count", "4", "--exposure", "2"}, 2, "--mains");
   expect({"filter", "--rate", "60", "--pass", "12", "--stop", "20", "--order", "8", "--phase", "odd"}, 2,
          "allowed: linear, minimum");
   expect_lights(sky, {"--count", "4", "--temporal", "fir"}, 2, "sequence");

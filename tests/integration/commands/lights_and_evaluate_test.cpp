@@ -167,6 +167,36 @@ TEST_F(Commands, TemporalChoicesDelayAsTheyState) {
   EXPECT_NEAR(none[5] / none[0], 3, 1e-4);
 }
 
+TEST_F(Commands, MainsFlickerIsTakenOutAndASwitchedLampIsNot) {
+  constexpr int kFrames = 30;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    LatLongImage image = sky(24, 12);
+    const double flicker = 1 + 0.3 * std::cos(2 * kPi * 100 * frame / 60.0);
+    const double lamp = frame < 20 ? 1 : 4;
+    for (Rgb& pixel : image.pixels) pixel *= static_cast<float>(lamp * flicker);
+    ASSERT_TRUE(write_environment(path("e" + std::to_string(frame) + ".exr"), image));
+  }
+  const auto totals = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"lights",     path("e%d.exr"), "--count", "4",     "--method",
+                                      "median-cut", "--rate",        "60",      "--out", path("l.jsonl")};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto run = lightwell(words);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    std::vector<double> list;
+    const auto sets = read_light_sets(path("l.jsonl"));
+    for (const LightSet& set : sets.value()) list.push_back(luminance(sum(set)));
+    return list;
+  };
+  const std::vector<double> as_it_is = totals({});
+  const std::vector<double> steady = totals({"--mains", "50", "--exposure", "0"});
+  const double level = (as_it_is[0] + as_it_is[1] + as_it_is[2]) / 3;  // 100 Hz at 60: three frames a period
+  for (std::size_t frame = 8; frame < 20; ++frame)
+    EXPECT_NEAR(steady[frame] / level, 1, 0.02) << frame;  // twenty decibels of .3 are .03
+  // All lamps together become four times brighter: the swing that comes with that is learnt in three frames.
+  for (std::size_t frame = 24; frame < kFrames; ++frame) EXPECT_NEAR(steady[frame] / level, 4, 0.1) << frame;
+  EXPECT_GT(steady[20] / level, 3);
+}
+
 TEST_F(Commands, BlackImagesGiveLightsOfNoPower) {
   ASSERT_TRUE(write_environment(path("black.exr"), {7, 5, std::vector<Rgb>(35, Rgb::Zero())}));
   for (const Method method : kMethods) {
