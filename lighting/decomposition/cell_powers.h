@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "lighting/decomposition/lit_bins.h"
+#include "lighting/light_set.h"
+#include "lighting/polar_map.h"
+
+// Powers for lights whose directions are chosen. Any way to choose them can be combined with either; both sum
+// to the map's total in every channel.
+namespace lightwell {
+
+// Each light gets the light of its Voronoi cell: of the bins to which it is the nearest (of equally near ones
+// the first). source: Kollig and Keller 2003; Agarwal et al. 2003
+void set_cell_powers(const PolarMap& map, std::span<DirectionalLight> lights);
+
+// count lights: those at the places with the power of their cells, then dark ones beside the first.
+// bins: of the map; at least one place
+std::vector<DirectionalLight> lights_of_cells(const PolarMap& map, const LitBins& bins,
+                                              std::span<const Vec3d> places, std::size_t count);
+
+// Each light keeps its colour and gets the same luminance; a light without power has the map's mean colour.
+// Then each channel is scaled to the map's total: by 4 at most (a channel that the lights hardly have would
+// come out in one of them), what is missing then is spread evenly.
+void set_equal_powers(const PolarMap& map, std::span<DirectionalLight> lights);
+
+}  // namespace lightwell
