@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/decompose_options.h"
 #include "cli/progress.h"
 #include "interface/atomic_file.h"
 #include "interface/environment_io.h"
@@ -31,7 +32,7 @@ struct LightsOptions {
   std::string out;
   std::string method = "best";
   std::int64_t count = 0;
-  std::int64_t seed = 0;
+  DecomposeArguments decompose;
   bool sphere = false;
   bool hemisphere = false;
   double rotate_y_deg = 0;
@@ -46,7 +47,7 @@ struct LightsOptions {
 struct Plan {
   Method method = Method::best;
   int count = 1;
-  std::uint32_t seed = 0;
+  DecomposeOptions decompose;
   bool hemisphere = true;
   double rotate_y_rad = 0;
   double rate_hz = 60;
@@ -86,7 +87,9 @@ Result<Plan> plan_of(const LightsOptions& options) {
   if (!method) return usage("--method is " + options.method + ", allowed: " + method_names());
   plan.method = *method;
   plan.count = static_cast<int>(options.count);
-  plan.seed = static_cast<std::uint32_t>(options.seed);
+  const auto chosen = decompose_options(options.decompose, plan.method);
+  if (!chosen) return chosen.error();
+  plan.decompose = *chosen;
   plan.hemisphere = !options.sphere;
   plan.rotate_y_rad = options.rotate_y_deg * kPi / 180;
   plan.rate_hz = options.rate_hz;
@@ -96,6 +99,8 @@ Result<Plan> plan_of(const LightsOptions& options) {
   const auto temporal = temporal_choice(options, plan.method);
   if (!temporal) return temporal.error();
   plan.temporal = *temporal;
+  if (plan.temporal != TemporalChoice::none)
+    if (const Status carried = check_carried(plan.decompose); !carried) return carried.error();
   if ((options.mains_hz || options.exposure_ms) && !is_numbered_sequence(options.environment))
     return usage(std::string(options.mains_hz ? "--mains" : "--exposure") +
                  " needs a numbered sequence, such as 'env_%04d.exr'");
@@ -127,7 +132,7 @@ class Decomposer {
   Result<LightSet> next(const PolarMap& map) {
     const auto sampler = sampler_of(plan_.method);
     if (plan_.temporal == TemporalChoice::none || !sampler)
-      return decompose(map, plan_.method, plan_.count, plan_.seed);
+      return decompose(map, plan_.method, plan_.count, plan_.decompose);
     if (!pipeline_)
       if (const Status status = prepare(map, *sampler); !status) return status.error();
     const auto lights = pipeline_->process(map);
@@ -147,8 +152,8 @@ class Decomposer {
     LightPipelineOptions options;
     options.count = plan_.count;
     options.sampler = sampler;
-    options.relaxed = plan_.method == Method::havran;
-    options.seed = plan_.seed;
+    options.relaxed = plan_.decompose.points == Points::relaxed;
+    options.seed = plan_.decompose.seed;
     options.filter = TemporalFilter::none;
     options.clusters = 0;
     auto pipeline = LightPipeline::create(map.grid, map.channels, options);
@@ -166,15 +171,16 @@ class Decomposer {
 void report(const LightsOptions& options, const Plan& plan, std::size_t frames, double delay_frames,
             double ms, const Rgb& total) {
   if (options.json) {
-    const nlohmann::ordered_json result = {{"method", name(plan.method)},
-                                           {"coverage", plan.hemisphere ? "hemisphere" : "sphere"},
-                                           {"count", plan.count},
-                                           {"frames", frames},
-                                           {"temporal", name(plan.temporal)},
-                                           {"delay_frames", delay_frames},
-                                           {"total_illuminance", {total[0], total[1], total[2]}},
-                                           {"ms", ms},
-                                           {"out", options.out}};
+    nlohmann::ordered_json result = {{"method", name(plan.method)},
+                                     {"coverage", plan.hemisphere ? "hemisphere" : "sphere"},
+                                     {"count", plan.count},
+                                     {"frames", frames},
+                                     {"temporal", name(plan.temporal)},
+                                     {"delay_frames", delay_frames},
+                                     {"total_illuminance", {total[0], total[1], total[2]}},
+                                     {"ms", ms},
+                                     {"out", options.out}};
+    describe(plan.decompose, result);
     std::printf("%s\n", result.dump().c_str());
   } else {
     std::fprintf(stderr, "lightwell: %zu %s of %d lights to %s\n", frames, frames == 1 ? "set" : "sets",
@@ -228,7 +234,7 @@ int run_image(const LightsOptions& options, const Plan& plan) {
   const auto map = read_map(options.environment, plan);
   if (!map) return fail(map.error());
   const auto begin = std::chrono::steady_clock::now();
-  const auto set = decompose(*map, plan.method, plan.count, plan.seed);
+  const auto set = decompose(*map, plan.method, plan.count, plan.decompose);
   const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - begin;
   if (!set) return fail({set.error().kind, options.environment + ": " + set.error().message});
   if (const Status status = write_light_set(options.out, *set); !status) return fail(status.error());
@@ -264,9 +270,7 @@ Command add_lights(CLI::App& app) {
       ->type_name("M");
   auto* hemisphere = command->add_flag("--hemisphere", o->hemisphere, "The half above the horizon (default)");
   command->add_flag("--sphere", o->sphere, "All of the image")->excludes(hemisphere);
-  command->add_option("--seed", o->seed, "Turns the points of standard, havran and uniform; 0: none")
-      ->check(whole_numbers(0, UINT32_MAX))
-      ->type_name("S");
+  add_decompose_options(*command, o->decompose);
   command->add_option("--rotate-y", o->rotate_y_deg, "Turn the image about +Y: azimuth λ comes to λ + DEG")
       ->check(numbers_from(-360, 360, "-360 to 360 degrees"))
       ->type_name("DEG");

@@ -85,7 +85,17 @@ std::vector<DirectionalLight> uniform_lights(const PolarMap& map, int count, std
     DirectionalLight light;
     light.direction = direction_from_spherical(middle).cast<float>();
     light.illuminance = power[cell].cast<float>();
+    light.id = cell;
     lights.push_back(light);
+  }
+  return lights;
+}
+
+std::vector<DirectionalLight> dark_lights(const PolarGrid& grid, int count) {
+  const EqualAreaCells cells(grid.theta_max_rad, count);
+  std::vector<DirectionalLight> lights(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    lights[i].direction = direction_from_spherical(cells.middle(static_cast<int>(i))).cast<float>();
   }
   return lights;
 }

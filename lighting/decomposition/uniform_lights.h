@@ -16,4 +16,8 @@ namespace lightwell {
 // inverse, any prefix is spread out. seed: turns the cells about +Y; 0: not at all.    count: 1 to 100,000
 std::vector<DirectionalLight> uniform_lights(const PolarMap& map, int count, std::uint32_t seed);
 
+// What a black map is decomposed into by methods that go where light is: lights of no power in the middles of
+// equal cells.
+std::vector<DirectionalLight> dark_lights(const PolarGrid& grid, int count);
+
 }  // namespace lightwell

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <utility>
 
 #include "interface/atomic_file.h"
 #include "tests/integration/commands/command_fixture.h"
@@ -45,9 +46,22 @@ TEST_F(BadInput, ValuesOutOfRangeAreWrongUsage) {
     expect_lights(sky, {"--count", count}, 2,
                   "--count: value '" + std::string(count) + "', allowed whole numbers from 1 to 100000");
   expect_lights(sky, {}, 2, "--count");
-  for (const char* method : {"structured", "kollig-keller", "penrose", "nonsense", ""})
+  for (const char* method : {"nonsense", "median cut", "Best", ""})
     expect_lights(sky, {"--count", "4", "--method", method}, 2,
-                  "best, standard, havran, median-cut, uniform");
+                  "best, standard, havran, structured, kollig-keller, penrose, median-cut, uniform");
+  for (const char* powers : {"cell", ""})
+    expect_lights(sky, {"--count", "4", "--powers", powers}, 2,
+                  "--powers is " + std::string(powers) + ", allowed: own, cells, equal");
+  expect_lights(sky, {"--count", "4", "--method", "standard", "--points", "sobol"}, 2,
+                "--points is sobol, allowed: random, halton, relaxed");
+  for (const auto& [method, points] :
+       {std::pair{"best", "random"}, {"standard", "relaxed"}, {"havran", "random"}})
+    expect_lights(sky, {"--count", "4", "--method", method, "--points", points}, 2,
+                  "--points " + std::string(points) + " do not apply to method " + method);
+  expect_lights(sky, {"--count", "4", "--method", "standard", "--interpolation", "printed"}, 2,
+                "--interpolation printed does not apply to method standard, allowed: with havran");
+  expect_lights(sky, {"--count", "4", "--method", "havran", "--interpolation", "none"}, 2,
+                "--interpolation is none, allowed: power, printed");
   for (const char* seed : {"-1", "1.5", "4294967296"})
     expect_lights(sky, {"--count", "4", "--seed", seed}, 2,
                   "--seed: value '" + std::string(seed) + "', allowed whole numbers from 0 to 4294967295");
@@ -75,6 +89,13 @@ TEST_F(BadInput, ValuesOutOfRangeAreWrongUsage) {
   expect({"filter", "--rate", "60", "--pass", "12", "--stop", "20", "--order", "8", "--phase", "odd"}, 2,
          "allowed: linear, minimum");
   expect_lights(sky, {"--count", "4", "--temporal", "fir"}, 2, "sequence");
+  // Refused before a frame is looked for.
+  expect_lights(path("e%d.exr"), {"--count", "4", "--method", "havran", "--powers", "cells"}, 2,
+                "--powers cells needs --temporal none");
+  expect_lights(path("e%d.exr"), {"--count", "4", "--method", "havran", "--interpolation", "printed"}, 2,
+                "--interpolation printed needs --temporal none");
+  expect_lights(path("e%d.exr"), {"--count", "4", "--method", "standard", "--points", "random"}, 2,
+                "--points random needs --temporal none");
   expect_lights(path("e%d.exr"), {"--count", "4", "--temporal", "fir"}, 2, "standard, havran");
   expect_lights(sky, {"--count", "4", "--sphere", "--hemisphere"}, 2, "--hemisphere");
   expect_lights(sky, {"--count", "4", "--frobnicate"}, 2, "--frobnicate");
