@@ -15,8 +15,8 @@ void add_decompose_options(CLI::App& command, DecomposeArguments& arguments) {
       ->type_name("S");
   command
       .add_option("--powers", arguments.powers,
-                  "Each light's power: cells, the part of the map nearest to it; equal; default own, as the "
-                  "method says")
+                  "Each light's power: cells, the part of the map nearest to it; means, the same, moved to "
+                  "that part's middle; equal; default own, as the method says")
       ->type_name("P");
   command
       .add_option(
@@ -37,7 +37,7 @@ Result<DecomposeOptions> decompose_options(const DecomposeArguments& arguments, 
   options.seed = static_cast<std::uint32_t>(arguments.seed);
   if (arguments.powers) {
     const auto powers = powers_from_name(*arguments.powers);
-    if (!powers) return usage("--powers is " + *arguments.powers + ", allowed: own, cells, equal");
+    if (!powers) return usage("--powers is " + *arguments.powers + ", allowed: own, cells, means, equal");
     options.powers = *powers;
   }
   if (arguments.points) {

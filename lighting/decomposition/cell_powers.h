@@ -7,16 +7,25 @@
 #include <vector>
 
 #include "lighting/decomposition/lit_bins.h"
+#include "lighting/decomposition/voronoi_cells.h"
 #include "lighting/light_set.h"
 #include "lighting/polar_map.h"
 
-// Powers for lights whose directions are chosen. Any way to choose them can be combined with either; both sum
+// Powers for lights whose directions are chosen. Any way to choose them can be combined with any of these; all sum
 // to the map's total in every channel.
 namespace lightwell {
 
 // Each light gets the light of its Voronoi cell: of the bins to which it is the nearest (of equally near ones
 // the first). source: Kollig and Keller 2003; Agarwal et al. 2003
 void set_cell_powers(const PolarMap& map, std::span<DirectionalLight> lights);
+
+// The same, and each light moves to the luminance-weighted mean of its cell: one step of Lloyd's relaxation. A light
+// without a cell stays.
+void set_cell_means(const PolarMap& map, std::span<DirectionalLight> lights);
+
+// A light for each place of the cells, at its cell's mean with its light. bins: of the map
+std::vector<DirectionalLight> lights_at_means(const PolarMap& map, const LitBins& bins,
+                                              const VoronoiCells& cells);
 
 // count lights: those at the places with the power of their cells, then dark ones beside the first.
 // bins: of the map; at least one place

@@ -92,7 +92,7 @@ std::span<const Points> points_of(Method method) {
   return {};
 }
 
-constexpr std::array<std::string_view, 3> kPowersNames = {"own", "cells", "equal"};
+constexpr std::array<std::string_view, 4> kPowersNames = {"own", "cells", "means", "equal"};
 constexpr std::array<std::string_view, 3> kPointsNames = {"random", "halton", "relaxed"};
 constexpr std::array<std::string_view, 2> kInterpolationNames = {"power", "printed"};
 
@@ -208,6 +208,7 @@ Result<LightSet> decompose(const PolarMap& map, Method method, int count, const 
   set.coverage = coverage_of(map.grid);
   set.total_illuminance = total.cast<float>();
   set.lights = entry(method).lights(map, count, *all);
+  if (all->powers == Powers::means) set_cell_means(map, set.lights);
   keep_inside(map.grid, set.lights);
   if (all->powers == Powers::cells) set_cell_powers(map, set.lights);
   if (all->powers == Powers::equal) set_equal_powers(map, set.lights);

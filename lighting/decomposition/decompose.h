@@ -44,6 +44,7 @@ std::string method_names();  // "best, standard, …", for help and errors
 enum class Powers {
   own,    // as the method says
   cells,  // each the light of its Voronoi cell
+  means,  // the same, moved to the cell's mean direction
   equal,  // all the same luminance
 };
 

@@ -61,7 +61,7 @@ class Strata {
     for (std::size_t i = 0; i < bins.size(); ++i) lit_[bins.bin[i]] = static_cast<std::uint32_t>(i);
   }
 
-  std::vector<Vec3d> places(std::size_t count) {
+  std::vector<DirectionalLight> lights(const PolarMap& map, std::size_t count) {
     std::vector<double> importance;
     std::vector<std::size_t> room;
     for (const MapRegion& region : regions_) {
@@ -72,7 +72,7 @@ class Strata {
     for (std::size_t r = 0; r < regions_.size(); ++r)
       for (std::size_t k = 0; k < share[r]; ++k)
         cells_.add(k == 0 ? middle(regions_[r]) : farthest(regions_[r]));
-    return means();
+    return lights_at_means(map, bins_, cells_);
   }
 
  private:
@@ -94,16 +94,6 @@ class Strata {
     return bins_.direction[lit_[*std::min_element(region.bins.begin(), region.bins.end(), nearer)]];
   }
 
-  // Luminance-weighted means of the cells.
-  [[nodiscard]] std::vector<Vec3d> means() const {
-    std::vector<Vec3d> moment(cells_.places().size(), Vec3d::Zero());
-    for (std::size_t i = 0; i < bins_.size(); ++i)
-      moment[cells_.cell(i)] += bins_.power[i] * bins_.direction[i];
-    for (std::size_t p = 0; p < moment.size(); ++p)
-      moment[p] = moment[p].norm() > 0 ? moment[p].normalized() : cells_.places()[p];
-    return moment;
-  }
-
   const LitBins& bins_;
   VoronoiCells cells_;
   std::vector<std::uint32_t> lit_;  // index in LitBins of the map's bins
@@ -115,8 +105,11 @@ class Strata {
 std::vector<DirectionalLight> structured_sampling(const PolarMap& map, int count) {
   const LitBins bins = lit_bins(map);
   if (bins.empty()) return dark_lights(map.grid, count);
-  const std::vector<Vec3d> places = Strata(map, bins).places(static_cast<std::size_t>(count));
-  return lights_of_cells(map, bins, places, static_cast<std::size_t>(count));
+  auto lights = Strata(map, bins).lights(map, static_cast<std::size_t>(count));
+  DirectionalLight dark = lights.front();
+  dark.illuminance = Rgb::Zero();
+  lights.resize(static_cast<std::size_t>(count), dark);
+  return lights;
 }
 
 }  // namespace lightwell

@@ -13,7 +13,8 @@ namespace lightwell {
 // deviation; each connected region of a layer gets lights in proportion to (its power) · (its solid
 // angle)^¼, between importance by light and by area (section 3); brightest layer first, they are spread over
 // the region by taking, again and again, the place farthest from all lights so far (Hochbaum and Shmoys
-// 1985). Each then has the power of its Voronoi cell and stands at the cell's luminance-weighted mean.
+// 1985). The bins nearest to a place are its stratum; a light has all of its stratum's power and stands at
+// its luminance-weighted mean.
 //
 // Counts are rounded by the largest remainder, so exactly `count` lights come out; a region holds no more
 // lights than bins, and where fewer lit bins than lights exist, the rest have no power. Order: of

@@ -93,7 +93,7 @@ TEST_P(DecompositionInvariants, SoundForManyLights) {
 
 TEST_P(DecompositionInvariants, SoundWithAnyPowers) {
   const PolarMap map = outdoor({30, 90, kPi / 2});
-  for (const Powers powers : {Powers::cells, Powers::equal}) {
+  for (const Powers powers : {Powers::cells, Powers::means, Powers::equal}) {
     DecomposeOptions options;
     options.powers = powers;
     for (const int count : {1, 7, 64}) expect_sound(map, method(), count, options);

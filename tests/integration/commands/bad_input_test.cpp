@@ -51,7 +51,7 @@ TEST_F(BadInput, ValuesOutOfRangeAreWrongUsage) {
                   "best, standard, havran, structured, kollig-keller, penrose, median-cut, uniform");
   for (const char* powers : {"cell", ""})
     expect_lights(sky, {"--count", "4", "--powers", powers}, 2,
-                  "--powers is " + std::string(powers) + ", allowed: own, cells, equal");
+                  "--powers is " + std::string(powers) + ", allowed: own, cells, means, equal");
   expect_lights(sky, {"--count", "4", "--method", "standard", "--points", "sobol"}, 2,
                 "--points is sobol, allowed: random, halton, relaxed");
   for (const auto& [method, points] :
