@@ -5,25 +5,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <memory>
-#include <optional>
-
-#include "lighting/decomposition/decompose.h"
-#include "lighting/light_pipeline.h"
+#include <filesystem>
+#include <utility>
 
 namespace lightwell::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-Timing timing_of(std::vector<double> ms) {
-  if (ms.empty()) return {};
-  std::sort(ms.begin(), ms.end());
-  const auto at = [&](double q) {
-    return ms[static_cast<std::size_t>(std::lround(q * static_cast<double>(ms.size() - 1)))];
-  };
-  return {at(0.1), at(0.5), at(0.99), ms.size()};
-}
 
 // One follower on its way through a sequence.
 struct Run {
@@ -33,38 +21,6 @@ struct Run {
   std::vector<double> ms;
   std::vector<CoherenceMeter> meters;  // the whole set's, then one a prefix
 };
-
-Follower every_frame_anew(Method method, int count) {
-  return {std::string(name(method)), [=] {
-            return [=](const PolarMap& map, LightSet& set) {
-              auto lights = decompose(map, method, count);
-              if (lights) set = std::move(lights).value();
-            };
-          }};
-}
-
-Follower pipeline(Method method, int count, TemporalFilter filter, const std::string& name_of_filter) {
-  return {std::string(name(method)) + name_of_filter, [=] {
-            auto state = std::make_shared<std::optional<LightPipeline>>();
-            return [=](const PolarMap& map, LightSet& set) {
-              if (!*state) {
-                LightPipelineOptions options;
-                options.count = count;
-                options.sampler = *sampler_of(method);
-                options.relaxed = method == Method::havran;
-                options.filter = filter;
-                options.rate_hz = 21;  // the paper's camera and filter: Havran et al. 2005, section 4.2
-                options.pass_hz = 7;
-                options.stop_hz = 9;
-                options.clusters = 0;
-                state->emplace(LightPipeline::create(map.grid, map.channels, options).value());
-              }
-              const auto lights = (*state)->process(map);
-              set.lights.assign(lights.begin(), lights.end());
-              set.total_illuminance = (*state)->total_illuminance();
-            };
-          }};
-}
 
 Row row_of(const FollowedRow& followed) {
   Row row{followed.sequence, followed.follower, followed.timing, {}};
@@ -85,12 +41,13 @@ Row row_of(const FollowedRow& followed) {
 
 }  // namespace
 
-std::vector<FollowedRow> follow(const Sequence& sequence, const std::vector<Follower>& followers) {
+std::vector<FollowedRow> follow(const Sequence& sequence, const std::vector<Follower>& followers,
+                                int lights) {
   PolarMap map = sequence_map();
   const EvaluationGeometry geometry(map.grid);
   std::vector<Run> runs;
   for (const Follower& follower : followers) {
-    Run run{&follower, follower.make(), {}, {}, {CoherenceMeter()}};
+    Run run{&follower, follower.make(lights), {}, {}, {CoherenceMeter()}};
     for (const std::size_t prefix : follower.prefixes) run.meters.emplace_back(Occluder::sphere, prefix);
     runs.push_back(std::move(run));
   }
@@ -112,27 +69,103 @@ std::vector<FollowedRow> follow(const Sequence& sequence, const std::vector<Foll
   return rows;
 }
 
-std::vector<Follower> all_followers(int count) {
-  std::vector<Follower> all;
+std::vector<Follower> all_followers() {
+  std::vector<Follower> all = all_methods();
   for (const Method method : kMethods)
-    all.push_back(sampler_of(method) ? pipeline(method, count, TemporalFilter::none, "")
-                                     : every_frame_anew(method, count));
-  for (const Method method : kMethods)
-    if (sampler_of(method)) all.push_back(pipeline(method, count, TemporalFilter::fir, " + FIR"));
+    if (sampler_of(method))
+      for (const TemporalChoice choice :
+           {TemporalChoice::fir, TemporalChoice::minimum_phase, TemporalChoice::one_frame})
+        all.push_back(filtered_follower(method, choice));
+  all.push_back(without_flicker(method_follower(Method::median_cut)));
   return all;
 }
 
-std::vector<Row> coherence_suite(const Options& options) {
-  const std::filesystem::path maps =
-      options.data_folder.empty() ? "" : std::filesystem::path(options.data_folder) / "env";
-  std::vector<Row> rows;
-  std::vector<Follower> followers = all_followers(options.lights);
-  std::erase_if(followers,
-                [&](const Follower& f) { return f.name.find(options.only_name) == std::string::npos; });
-  for (const Sequence& sequence : sequences(maps)) {
-    if (sequence.name.find(options.only_setting) == std::string::npos) continue;
-    for (const FollowedRow& followed : follow(sequence, followers)) rows.push_back(row_of(followed));
+namespace {
+
+std::vector<Sequence> asked_sequences(const Options& options) {
+  std::vector<Sequence> all =
+      sequences(options.data_folder.empty() ? "" : std::filesystem::path(options.data_folder) / "env");
+  std::erase_if(all,
+                [&](const Sequence& s) { return s.name.find(options.only_setting) == std::string::npos; });
+  return all;
+}
+
+std::vector<Follower> asked_followers(const Options& options) {
+  std::vector<Follower> all = all_followers();
+  std::erase_if(all, [&](const Follower& f) { return f.name.find(options.only_name) == std::string::npos; });
+  return all;
+}
+
+// A follower's record over several sequences.
+struct Means {
+  std::size_t sequences = 0, told = 0;
+  double error = 0, excess = 0, change_error = 0, largest_excess = 0, latency = 0;
+  std::vector<double> p50_ms;
+  double p99_ms = 0;
+
+  void add(const FollowedRow& row) {
+    const Steadiness& s = row.coherence.shadow;
+    ++sequences;
+    error += s.error;
+    excess += s.excess;
+    change_error += s.change_error;
+    largest_excess = std::max(largest_excess, s.largest_excess);
+    if (std::isfinite(row.coherence.power_lag_frames)) {
+      latency += row.coherence.power_lag_frames;
+      ++told;
+    }
+    p50_ms.push_back(row.timing.p50_ms);
+    p99_ms = std::max(p99_ms, row.timing.p99_ms);
   }
+  [[nodiscard]] Row row(const std::string& follower) const {
+    const auto count = static_cast<double>(sequences);
+    Row made{"temporal", follower, timing_of(p50_ms), {}};
+    made.timing.p99_ms = p99_ms;
+    made.values = {{"shadow_error", error / count},
+                   {"shadow_excess", excess / count},
+                   {"shadow_change_error", change_error / count},
+                   {"shadow_largest_excess", largest_excess},
+                   {"latency_frames", latency / static_cast<double>(told)},
+                   {"sequences", count}};
+    return made;
+  }
+};
+
+}  // namespace
+
+std::vector<Row> coherence_suite(const Options& options) {
+  const std::vector<Follower> followers = asked_followers(options);
+  std::vector<Row> rows;
+  for (const Sequence& sequence : asked_sequences(options))
+    for (const FollowedRow& followed : follow(sequence, followers, options.lights))
+      rows.push_back(row_of(followed));
+  return rows;
+}
+
+std::vector<Row> temporal_rows(const Options& options) {
+  const std::vector<Follower> followers = asked_followers(options);
+  std::vector<Means> means(followers.size());
+  for (const Sequence& sequence : asked_sequences(options)) {
+    const std::vector<FollowedRow> rows = follow(sequence, followers, options.lights);
+    for (std::size_t i = 0; i < rows.size(); ++i) means[i].add(rows[i]);
+  }
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < followers.size(); ++i)
+    if (means[i].sequences > 0) rows.push_back(means[i].row(followers[i].name));
+  return rows;
+}
+
+std::vector<Row> rate_rows(const Options& options) {
+  std::vector<Row> rows;
+  for (const double rate : {15.0, 30.0, 60.0, 120.0, 240.0})
+    for (const FollowedRow& followed : follow(sun_at_rate(rate), all_methods(), options.lights)) {
+      Row row{"growth, rate", followed.follower, followed.timing, {}};
+      row.values = {{"rate_hz", rate},
+                    {"share_of_core", followed.timing.p50_ms * rate / 1000},
+                    {"shadow_error", followed.coherence.shadow.error},
+                    {"shadow_excess", followed.coherence.shadow.excess}};
+      rows.push_back(std::move(row));
+    }
   return rows;
 }
 

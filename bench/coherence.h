@@ -3,26 +3,15 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <string>
 #include <vector>
 
+#include "bench/followers.h"
 #include "bench/sequences.h"
 #include "bench/suite.h"
 #include "lighting/evaluation/coherence.h"
-#include "lighting/light_set.h"
 
 namespace lightwell::bench {
-
-// Map after map to light sets, with whatever state it keeps. set is reused from frame to frame.
-using Stepper = std::function<void(const PolarMap& map, LightSet& set)>;
-
-// One way to follow a sequence: a new stepper, without history, for each.
-struct Follower {
-  std::string name;  // "best, 64 lights"
-  std::function<Stepper()> make;
-  std::vector<std::size_t> prefixes = {};  // also measured: the first n lights of each set
-};
 
 // What a follower did on a sequence. prefix 0: the whole set.
 struct FollowedRow {
@@ -33,12 +22,21 @@ struct FollowedRow {
   double cold_ms = 0;
 };
 
-// Draws every frame once, and has all followers follow it.
-std::vector<FollowedRow> follow(const Sequence& sequence, const std::vector<Follower>& followers);
+// Draws every frame once, and has all followers follow it with so many lights.
+std::vector<FollowedRow> follow(const Sequence& sequence, const std::vector<Follower>& followers, int lights);
 
-// Followers of all methods without state, of the samplers with their filter, at a count of lights.
-std::vector<Follower> all_followers(int count);
+// Every method, the samplers with every filter, and one behind the mains filter.
+std::vector<Follower> all_followers();
 
+// One row a sequence and follower.
 std::vector<Row> coherence_suite(const Options& options);
+
+// One row a follower, 64 lights, means over all sequences: rows "temporal" with shadow_error, shadow_excess,
+// shadow_change_error, shadow_largest_excess (the largest), latency_frames (of power, where sequences tell).
+std::vector<Row> temporal_rows(const Options& options);
+
+// A sun of 30 degrees a second over noise of 1 %, at 15 to 240 frames a second, 64 lights: rows "growth, rate" with
+// rate_hz, share_of_core, shadow_error, shadow_excess.
+std::vector<Row> rate_rows(const Options& options);
 
 }  // namespace lightwell::bench

@@ -249,6 +249,17 @@ PolarMap sequence_map() {
   return PolarMap::make(kGrid, 3);
 }
 
+Sequence sun_at_rate(double rate_hz) {
+  const MapPointer sky = painted(sky_radiance);
+  return {"sun at " + std::to_string(static_cast<int>(rate_hz)) + " Hz",
+          std::min(120, static_cast<int>(2.5 * rate_hz)), [=](int frame, PolarMap& map) {
+            const double t = frame / rate_hz;
+            copy(*sky, map);
+            add_relative_noise(map, 0.01, static_cast<std::uint32_t>(frame));
+            add_disc(map, from_degrees(62 - 10 * t, 100 + 36 * t), 0.6, Rgb(3600, 3300, 2800));
+          }};
+}
+
 std::vector<Sequence> sequences(const std::filesystem::path& maps) {
   const MapPointer sky = painted(sky_radiance);
   const MapPointer room_sphere = painted(room_radiance, kSphere);

@@ -28,4 +28,7 @@ PolarMap sequence_map();
 // (Radiance HDR or EXR, latitude–longitude, 2:1) also those found there of the few named in the source.
 std::vector<Sequence> sequences(const std::filesystem::path& maps = {});
 
+// Two seconds and a half, at most 120 frames, of a sun that moves by 30 degrees a second over a sky with 1 % noise.
+Sequence sun_at_rate(double rate_hz);
+
 }  // namespace lightwell::bench

@@ -16,6 +16,7 @@ struct Options {
   double seconds_per_case = 1;  // time spent on each case, at least Turns::least_runs
   std::string
       data_folder;  // reference data that is not part of the project; empty: what needs it is left out
+  std::string peers_folder;  // scripts of peers in Python (bench/peers); empty: left out
   std::string only_setting;  // coherence: only settings (sequences) whose name contains this; empty: all
   std::string only_name;     // coherence: only rows whose name contains this; empty: all
   int lights = 64;           // coherence: lights of each set
@@ -54,9 +55,20 @@ struct Case {
 std::vector<Row> time_in_turns(const std::string& setting, std::vector<Case> cases, const Options& options,
                                const std::string& baseline = "", const Turns& turns = {});
 
+// Percentiles of times in ms, at least one.
+Timing timing_of(std::vector<double> ms);
+
+// A plot: <name>.svg.
+struct Figure {
+  std::string name;
+  std::string svg;
+};
+
 struct Suite {
   std::string name;
   std::vector<Row> (*run)(const Options&);
+  // Plots of its rows; null: one of bars (to_svg).
+  std::vector<Figure> (*figures)(const std::vector<Row>&) = nullptr;
 };
 const std::vector<Suite>& suites();
 

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "bench/coherence.h"
+#include "bench/error_curves.h"
 #include "bench/lights_suite.h"
 #include "bench/suite.h"
 
@@ -35,6 +37,8 @@ std::vector<Row> lights_rows(const Options& options) {
     rows.push_back(row_from_json(std::to_string(entry.at("lights").get<int>()) + " lights",
                                  entry.at("method").get<std::string>(), entry));
   for (Row& row : rows) row.timing.runs = static_cast<std::size_t>(frames);
+  for (const auto& more : {error_rows, temporal_rows, growth_rows, rate_rows})
+    for (Row& row : more(options)) rows.push_back(std::move(row));
   return rows;
 }
 
@@ -42,7 +46,7 @@ std::vector<Row> lights_rows(const Options& options) {
 
 const std::vector<Suite>& suites() {
   static const std::vector<Suite> all = {
-      {"frame", frame_suite},       {"lights", lights_rows},        {"lens", lens_suite},
+      {"frame", frame_suite},       {"lights", lights_rows, curve_figures}, {"lens", lens_suite},
       {"response", response_suite}, {"coherence", coherence_suite},
   };
   return all;

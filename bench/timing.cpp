@@ -15,15 +15,15 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-Timing percentiles(std::vector<double> ms) {
+}  // namespace
+
+Timing timing_of(std::vector<double> ms) {
   std::sort(ms.begin(), ms.end());
   const auto at = [&](double q) {
     return ms[static_cast<std::size_t>(std::lround(q * static_cast<double>(ms.size() - 1)))];
   };
   return {at(0.1), at(0.5), at(0.99), ms.size()};
 }
-
-}  // namespace
 
 std::vector<Row> time_in_turns(const std::string& setting, std::vector<Case> cases, const Options& options,
                                const std::string& baseline, const Turns& turns) {
@@ -42,7 +42,7 @@ std::vector<Row> time_in_turns(const std::string& setting, std::vector<Case> cas
     }
   std::vector<Row> rows;
   for (std::size_t c = 0; c < cases.size(); ++c)
-    rows.push_back({setting, cases[c].name, percentiles(ms[c]), std::move(cases[c].values)});
+    rows.push_back({setting, cases[c].name, timing_of(ms[c]), std::move(cases[c].values)});
   for (const Row& base : rows) {
     if (base.name != baseline) continue;
     const double p50 = base.timing.p50_ms;

@@ -19,6 +19,11 @@ struct Asked {
   bench::Options options;
 };
 
+std::vector<bench::Figure> figures_of(const bench::Suite& suite, const std::vector<bench::Row>& rows) {
+  if (suite.figures != nullptr) return suite.figures(rows);
+  return {{suite.name, bench::to_svg(suite.name, rows)}};
+}
+
 int run(const Asked& asked) {
   // Before minutes of work, not after.
   for (const std::filesystem::path& folder :
@@ -37,11 +42,14 @@ int run(const Asked& asked) {
     if (const Status status = write_file_atomically(asked.json_file, bench::to_json(results)); !status)
       return fail(status.error());
   if (!asked.svg_folder.empty())
-    for (const auto& [name, rows] : results) {
-      const auto file = std::filesystem::path(asked.svg_folder) / (name + ".svg");
-      if (const Status status = write_file_atomically(file, bench::to_svg(name, rows)); !status)
-        return fail(status.error());
-    }
+    for (const bench::Suite& suite : bench::suites())
+      for (const auto& [name, rows] : results)
+        if (name == suite.name)
+          for (const bench::Figure& figure : figures_of(suite, rows))
+            if (const Status status = write_file_atomically(
+                    std::filesystem::path(asked.svg_folder) / (figure.name + ".svg"), figure.svg);
+                !status)
+              return fail(status.error());
   return 0;
 }
 
@@ -56,12 +64,14 @@ Command add_bench(CLI::App& app) {
       ->check(CLI::IsMember(names))
       ->capture_default_str();
   command->add_option("--json", asked->json_file, "Write all numbers, CPU, compiler, flags and commit here");
-  command->add_option("--svg", asked->svg_folder, "Write a plot of each suite into this folder");
+  command->add_option("--svg", asked->svg_folder, "Write plots of each suite into this folder");
   command->add_option("--data", asked->options.data_folder,
-                      "Folder of reference data (fisheye_cal/…): cases that need it run too");
+                      "Folder of reference data (env/, fisheye_cal/…): cases that need it run too");
   command->add_option("--seconds", asked->options.seconds_per_case, "Time for each case")
       ->check(numbers_from(0, 600, "0 to 600 seconds"))
       ->capture_default_str();
+  command->add_option("--peers", asked->options.peers_folder,
+                      "Folder of peers in Python (bench/peers): the lights suite runs them too");
   command->add_option("--only", asked->options.only_setting,
                       "Of the coherence suite, sequences whose name contains this");
   command->add_option("--followers", asked->options.only_name,

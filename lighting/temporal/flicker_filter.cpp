@@ -124,35 +124,41 @@ void FlickerFilter::turn(double seconds, double exposure_s) noexcept {
   }
 }
 
-// The level has jumped: lamps were switched.
+// The level has jumped: lamps were switched, or something moves.
 void FlickerFilter::jump(Follower& f, float power, float innovation) const noexcept {
   const bool lit = power * kDark > f.level;       // was dark beside what it is now
   const bool darkened = power < kDark * f.level;  // is dark beside what it was
   const float per_level = f.level > 0 ? 1 / f.level : 0;
-  f.level = power;
+  if (f.age < learning_frames()) f.trusted = false;  // again, before it was learnt: no lamp does that
+  float swing = 0;
+  float size = 0;
   for (std::size_t k = 0; k < order_.size(); ++k) {
-    if (darkened) {
-      const float u = f.swing[k] * per_level;
-      const float v = f.quadrature[k] * per_level;
-      f.kept_swing[k] = u * phase_cos_[k] + v * phase_sin_[k];
-      f.kept_quadrature[k] = v * phase_cos_[k] - u * phase_sin_[k];
+    float& u = f.swing[k];
+    float& v = f.quadrature[k];
+    if (!f.trusted) u = v = 0;
+    if (darkened && f.trusted) {
+      f.kept_swing[k] = (u * phase_cos_[k] + v * phase_sin_[k]) * per_level;
+      f.kept_quadrature[k] = (v * phase_cos_[k] - u * phase_sin_[k]) * per_level;
     }
     if (lit || darkened) {
-      f.swing[k] = (f.kept_swing[k] * phase_cos_[k] - f.kept_quadrature[k] * phase_sin_[k]);
-      f.quadrature[k] = (f.kept_quadrature[k] * phase_cos_[k] + f.kept_swing[k] * phase_sin_[k]);
+      u = f.kept_swing[k] * phase_cos_[k] - f.kept_quadrature[k] * phase_sin_[k];
+      v = f.kept_quadrature[k] * phase_cos_[k] + f.kept_swing[k] * phase_sin_[k];
     }
+    swing += u;
+    size += std::abs(u) + std::abs(v);
   }
-  float swing = 0;
-  for (std::size_t k = 0; k < order_.size(); ++k) swing += f.swing[k];
-  if (lit || darkened) {  // the swing is kept in parts of the level: power = level · (1 + swing)
-    f.level = power / std::max(0.1f, 1 + swing);
+  if (lit || darkened) {  // the swing is in parts of the level: power = level · (1 + swing)
+    f.level = power / std::max(0.4f, 1 + swing);
     for (std::size_t k = 0; k < order_.size(); ++k) {
       f.swing[k] *= f.level;
       f.quadrature[k] *= f.level;
     }
+    size *= f.level;
   } else {
     f.level = power - swing;
   }
+  // What was known before serves at once; what is new has to be learnt.
+  f.trusted = size > 0.01f * f.level;
   f.scale = std::abs(innovation);
   f.age = 1;
 }
@@ -196,7 +202,9 @@ void FlickerFilter::apply(double time_s, double exposure_s, std::span<float> pow
         f.quadrature[k] += gain[2 + 2 * k] * innovation;
       }
       if (f.age + 1u < kAges) ++f.age;
+      if (f.age > learning_frames()) f.trusted = true;
     }
+    if (!f.trusted) continue;
     float out = power;
     for (std::size_t k = 0; k < harmonics; ++k) out -= f.swing[k];
     powers[i] = std::max(0.0f, out);

@@ -30,9 +30,9 @@ struct FlickerOptions {
 // filter learns anew; a source that went dark takes its swing along, and gets it back with its light (lamps keep
 // their phase on the mains).
 //
-// What cannot be told from a change of the light itself passes: harmonics that fold to slower than 64 frames a
-// period (100 Hz at 25 or 50 frames a second is no flicker at all), and everything in the first frames after a
-// new lamp, three where one harmonic is followed, five where two are.
+// A swing is taken out once it has foretold a frame: four frames after a new lamp where one harmonic is followed,
+// six where two are. Until then, and where the light jumps more often than that, everything passes as it is; so do
+// harmonics that fold to slower than 64 frames a period (100 Hz at 25 or 50 frames a second is no flicker at all).
 // source: Kalman 1960; the turning frame as in adaptive notch filters (Widrow et al. 1975)
 class FlickerFilter {
  public:
@@ -56,6 +56,8 @@ class FlickerFilter {
 
   FlickerFilter(std::size_t powers, const FlickerOptions& options);
   void make_gains(double depth);
+  // As many frames as there are unknowns.
+  [[nodiscard]] std::size_t learning_frames() const { return 1 + 2 * order_.size(); }
   // A power's filter.
   struct Follower {
     float level = 0;
@@ -65,6 +67,7 @@ class FlickerFilter {
     float noise = 0;        // of an innovation: a running quantile
     float scale = 0;        // of the last jump
     std::uint8_t age = 0;
+    bool trusted = false;  // the swing has foretold a frame
   };
   void jump(Follower& f, float power, float innovation) const noexcept;
   void turn(double seconds, double exposure_s) noexcept;
