@@ -112,7 +112,7 @@ std::string frame_of(const Chart& chart, const Axis& x_axis, const Axis& y_axis)
   const double height = kHeight - kTop - kBottom;
   std::string svg = "<text x='" + at(kLeft) + "' y='20' font-size='14' font-weight='bold'>" +
                     escaped(chart.title) + "</text>\n";
-  for (const double v : x_axis.ticks()) {
+  for (const double v : chart.x_ticks.empty() ? x_axis.ticks() : chart.x_ticks) {
     const std::string x = at(kLeft + width * x_axis.share(v));
     svg += "<line x1='" + x + "' x2='" + x + "' y1='" + at(kTop) + "' y2='" + at(kTop + height) +
            "' stroke='#ddd'/><text x='" + x + "' y='" + at(kTop + height + 16) + "' text-anchor='middle'>" +

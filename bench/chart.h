@@ -21,6 +21,7 @@ struct Chart {
   std::string x_label, y_label;  // with their units
   bool log_x = true, log_y = true;
   std::vector<Line> lines;
+  std::vector<double> x_ticks = {};  // empty: decades, or round steps
 };
 
 // Charts beside each other, in rows of two, with one legend below and a line of text under all.

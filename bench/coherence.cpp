@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <numeric>
 #include <utility>
 
 namespace lightwell::bench {
@@ -76,7 +78,6 @@ std::vector<Follower> all_followers() {
       for (const TemporalChoice choice :
            {TemporalChoice::fir, TemporalChoice::minimum_phase, TemporalChoice::one_frame})
         all.push_back(filtered_follower(method, choice));
-  all.push_back(without_flicker(method_follower(Method::median_cut)));
   return all;
 }
 
@@ -90,10 +91,61 @@ std::vector<Sequence> asked_sequences(const Options& options) {
   return all;
 }
 
+// Without those that would hold up thousands of frames.
+std::vector<Follower> at_frame_rate(std::vector<Follower> followers, const Options& options) {
+  const double most_ms = 10 * std::max(0.2, options.seconds_per_case);
+  PolarMap map = sequence_map();
+  const Sequence sequence = sun_at_rate(60);
+  std::erase_if(followers, [&](const Follower& follower) {
+    const Stepper step = follower.make(options.lights);
+    LightSet set;
+    double least_ms = 1e9;  // what else the machine does only adds to it
+    for (int frame = 0; frame < 4; ++frame) {
+      sequence.draw(frame, map);
+      const auto begin = Clock::now();
+      step(map, set);
+      least_ms = std::min(least_ms, std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
+    }
+    if (least_ms <= most_ms) return false;
+    std::fprintf(stderr, "%s: %.3g ms a frame, left out of moving lights (--seconds)\n",
+                 follower.name.c_str(), least_ms);
+    return true;
+  });
+  return followers;
+}
+
 std::vector<Follower> asked_followers(const Options& options) {
   std::vector<Follower> all = all_followers();
   std::erase_if(all, [&](const Follower& f) { return f.name.find(options.only_name) == std::string::npos; });
   return all;
+}
+
+Rgbd sum_of_lights(const LightSet& set) {
+  Rgbd sum = Rgbd::Zero();
+  for (const DirectionalLight& light : set.lights) sum += light.illuminance.cast<double>();
+  return sum;
+}
+
+// What a series of total powers does with flicker, and with a lamp that goes dark in a frame.
+struct SwitchedLamp {
+  double swing = 0, passed_in_frame = 0, latency_frames = 0;
+};
+SwitchedLamp switched_lamp(const std::vector<double>& power, int settled, int switched) {
+  const auto at = [&](int frame) { return power.begin() + frame; };
+  const auto mean = [&](int from, int to) { return std::accumulate(at(from), at(to), 0.0) / (to - from); };
+  const double before = mean(settled, switched);
+  const double after = mean(switched + 12, switched + 24);  // whole periods of three frames
+  const auto [least, largest] = std::minmax_element(at(settled), at(switched));
+  SwitchedLamp lamp{(*largest - *least) / (2 * before), 0, 0};
+  // Of flicker that is left only its mean over a period says where the step is.
+  const auto passed = [&](int frame) {
+    return (before - power[static_cast<std::size_t>(frame)]) / (before - after);
+  };
+  lamp.passed_in_frame = passed(switched);
+  int frame = switched;
+  while (frame < switched + 12 && passed(frame) < 0.5) ++frame;
+  lamp.latency_frames = frame - switched;
+  return lamp;
 }
 
 // A follower's record over several sequences.
@@ -143,7 +195,7 @@ std::vector<Row> coherence_suite(const Options& options) {
 }
 
 std::vector<Row> temporal_rows(const Options& options) {
-  const std::vector<Follower> followers = asked_followers(options);
+  const std::vector<Follower> followers = at_frame_rate(asked_followers(options), options);
   std::vector<Means> means(followers.size());
   for (const Sequence& sequence : asked_sequences(options)) {
     const std::vector<FollowedRow> rows = follow(sequence, followers, options.lights);
@@ -155,10 +207,53 @@ std::vector<Row> temporal_rows(const Options& options) {
   return rows;
 }
 
+std::vector<Row> flicker_rows(const Options& options) {
+  constexpr int kSettled = 24;  // frames that every filter has learnt in
+  std::vector<Follower> followers = {
+      method_follower(Method::best), without_flicker(method_follower(Method::best)),
+      method_follower(Method::havran), without_flicker(method_follower(Method::havran))};
+  for (const TemporalChoice choice :
+       {TemporalChoice::fir, TemporalChoice::minimum_phase, TemporalChoice::one_frame})
+    followers.push_back(filtered_follower(Method::havran, choice));
+  const Sequence sequence = mains_flicker();
+  PolarMap map = sequence_map();
+  std::vector<Row> rows;
+  double swing_of_map = 0;
+  for (std::size_t i = 0; i <= followers.size(); ++i) {  // the map itself, then each
+    const Stepper step = i == 0 ? nullptr : followers[i - 1].make(options.lights);
+    LightSet set;
+    std::vector<double> power, ms;
+    for (int frame = 0; frame < sequence.frames; ++frame) {
+      sequence.draw(frame, map);
+      if (step == nullptr) {
+        power.push_back(luminance(total_illuminance(map)));
+        continue;
+      }
+      const auto begin = Clock::now();
+      step(map, set);
+      ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
+      power.push_back(luminance(sum_of_lights(set)));
+    }
+    const SwitchedLamp lamp = switched_lamp(power, kSettled, kMainsSwitchedFrame);
+    if (step == nullptr) {
+      swing_of_map = lamp.swing;
+      continue;
+    }
+    Row row{"flicker", followers[i - 1].name, timing_of({ms.begin() + 1, ms.end()}), {}};
+    row.values = {{"swing", lamp.swing},
+                  {"suppression_db", 20 * std::log10(swing_of_map / std::max(lamp.swing, 1e-9))},
+                  {"passed_in_frame", lamp.passed_in_frame},
+                  {"latency_frames", lamp.latency_frames}};
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
 std::vector<Row> rate_rows(const Options& options) {
+  const std::vector<Follower> followers = at_frame_rate(all_methods(), options);
   std::vector<Row> rows;
   for (const double rate : {15.0, 30.0, 60.0, 120.0, 240.0})
-    for (const FollowedRow& followed : follow(sun_at_rate(rate), all_methods(), options.lights)) {
+    for (const FollowedRow& followed : follow(sun_at_rate(rate), followers, options.lights)) {
       Row row{"growth, rate", followed.follower, followed.timing, {}};
       row.values = {{"rate_hz", rate},
                     {"share_of_core", followed.timing.p50_ms * rate / 1000},

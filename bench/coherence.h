@@ -35,6 +35,12 @@ std::vector<Row> coherence_suite(const Options& options);
 // shadow_change_error, shadow_largest_excess (the largest), latency_frames (of power, where sequences tell).
 std::vector<Row> temporal_rows(const Options& options);
 
+// What each makes of lamps that flicker at 100 Hz, one of them switched, at 60 frames a second: rows "flicker" with
+// swing (half of largest less least total power, relative, once settled), suppression_db against the map's own,
+// passed_in_frame (the part of the switched lamp's step that is there in its frame), latency_frames until half of
+// it is.
+std::vector<Row> flicker_rows(const Options& options);
+
 // A sun of 30 degrees a second over noise of 1 %, at 15 to 240 frames a second, 64 lights: rows "growth, rate" with
 // rate_hz, share_of_core, shadow_error, shadow_excess.
 std::vector<Row> rate_rows(const Options& options);

@@ -38,19 +38,22 @@ std::vector<Line> lines_of(const std::vector<Row>& rows, const std::string& sett
   return lines;
 }
 
+const std::vector<double> kLightTicks = {4, 8, 16, 32, 64, 128, 256, 512, 1024};
+
 Figure error_figure(const std::vector<Row>& rows, double maps) {
   const std::string over = std::to_string(static_cast<int>(maps)) + " maps, 90 x 360 over the hemisphere";
   const std::string error = "relative RMSE, geometric mean";
-  return {"lights-error", to_svg({{"Irradiance error against lights", "lights", error, true, true,
-                                   lines_of(rows, "error", value("lights"), value("irradiance_rel_rmse"))},
-                                  {"Shadow error against lights", "lights", error, true, true,
-                                   lines_of(rows, "error", value("lights"), value("shadow_rel_rmse"))},
-                                  {"Irradiance error against time", "time a frame, ms, median", error, true,
-                                   true, lines_of(rows, "error", p50_ms(), value("irradiance_rel_rmse"))},
-                                  {"Shadow error against time", "time a frame, ms, median", error, true, true,
-                                   lines_of(rows, "error", p50_ms(), value("shadow_rel_rmse"))}},
-                                 "lightwell bench --suite lights: " + over +
-                                     "; along a line by time, lights double from 4 on")};
+  return {
+      "lights-error",
+      to_svg({{"Irradiance error against lights", "lights", error, true, true,
+               lines_of(rows, "error", value("lights"), value("irradiance_rel_rmse")), kLightTicks},
+              {"Shadow error against lights", "lights", error, true, true,
+               lines_of(rows, "error", value("lights"), value("shadow_rel_rmse")), kLightTicks},
+              {"Irradiance error against time", "time a frame, ms, median", error, true, true,
+               lines_of(rows, "error", p50_ms(), value("irradiance_rel_rmse"))},
+              {"Shadow error against time", "time a frame, ms, median", error, true, true,
+               lines_of(rows, "error", p50_ms(), value("shadow_rel_rmse"))}},
+             "lightwell bench --suite lights: " + over + "; along a line by time, lights double from 4 on")};
 }
 
 Figure latency_figure(const std::vector<Row>& rows) {
@@ -62,20 +65,33 @@ Figure latency_figure(const std::vector<Row>& rows) {
                   {"Shadow error, lag counted", x, "relative RMSE", false, false,
                    lines_of(rows, "temporal", latency, value("shadow_error"), true)},
                   {"Error of the change from frame to frame", x, "relative RMSE of the change", false, false,
-                   lines_of(rows, "temporal", latency, value("shadow_change_error"), true)}},
+                   lines_of(rows, "temporal", latency, value("shadow_change_error"), true)},
+                  {"Mains flicker that is left", "latency of a switched lamp, frames",
+                   "swing of total power, relative", false, false,
+                   lines_of(rows, "flicker", latency, value("swing"), true)}},
                  "lightwell bench --suite lights: 64 lights, means over all moving lights")};
 }
 
 Figure growth_figure(const std::vector<Row>& rows) {
   return {"lights-growth",
           to_svg({{"Time against lights", "lights", "time a frame, ms, median", true, true,
-                   lines_of(rows, "growth, lights", value("lights"), p50_ms())},
+                   lines_of(rows, "growth, lights", value("lights"), p50_ms()), kLightTicks},
                   {"Time against pixels, 64 lights", "pixels of the map", "time a frame, ms, median", true,
                    true, lines_of(rows, "growth, pixels", value("pixels"), p50_ms())},
-                  {"Load against frame rate, 64 lights", "frames a second", "share of one core", true, true,
-                   lines_of(rows, "growth, rate", value("rate_hz"), value("share_of_core"))},
-                  {"Shadow error against frame rate", "frames a second", "relative RMSE", true, true,
-                   lines_of(rows, "growth, rate", value("rate_hz"), value("shadow_error"))}},
+                  {"Load against frame rate, 64 lights",
+                   "frames a second",
+                   "share of one core",
+                   true,
+                   true,
+                   lines_of(rows, "growth, rate", value("rate_hz"), value("share_of_core")),
+                   {15, 30, 60, 120, 240}},
+                  {"Shadow error against frame rate",
+                   "frames a second",
+                   "relative RMSE",
+                   true,
+                   true,
+                   lines_of(rows, "growth, rate", value("rate_hz"), value("shadow_error")),
+                   {15, 30, 60, 120, 240}}},
                  "lightwell bench --suite lights: a painted sky with a sun, warm frames")};
 }
 
@@ -85,8 +101,8 @@ std::vector<Figure> curve_figures(const std::vector<Row>& rows) {
   std::vector<Row> bars;
   double maps = 0;
   for (const Row& row : rows) {
-    const bool curve =
-        row.setting == "error" || row.setting == "temporal" || row.setting.starts_with("growth");
+    const bool curve = row.setting == "error" || row.setting == "temporal" || row.setting == "flicker" ||
+                       row.setting.starts_with("growth");
     if (!curve) bars.push_back(row);
     if (row.setting == "error") maps = std::max(maps, value_of(row, "maps"));
   }

@@ -144,7 +144,14 @@ std::vector<Follower> all_methods() {
 }
 
 std::vector<Follower> peers() {
-  return {row_column("row/column inversion, random", random_points),
+  DecomposeOptions cells;
+  cells.powers = Powers::cells;
+  const Follower havran_cells = {"havran, powers of cells", [=](int count) -> Stepper {
+                                   return [=](const PolarMap& map, LightSet& set) {
+                                     set = decompose(map, Method::havran, count, cells).value();
+                                   };
+                                 }};
+  return {havran_cells, row_column("row/column inversion, random", random_points),
           row_column("row/column inversion, Halton", halton), havran_as_printed()};
 }
 

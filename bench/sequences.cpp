@@ -194,26 +194,6 @@ Sequence hand_held(const std::string& name, const MapPointer& sphere) {
           }};
 }
 
-// Lamps on 50 Hz mains: their light swings at 100 Hz, which a camera of 60 frames a second sees at 20 Hz. Two
-// phases; the exposure of 2 ms averages a little. One lamp is switched off at frame 48, and on again at 72.
-Sequence mains_flicker(const MapPointer& room) {
-  return {"mains flicker, lamp switched", kFrames, [=](int frame, PolarMap& map) {
-            copy(*room, map);
-            constexpr double kExposure_s = 0.002;
-            constexpr double kLamp_hz = 100;
-            constexpr double kRate_hz = 60;
-            const double x = kPi * kLamp_hz * kExposure_s;
-            const double depth = 0.35 * std::sin(x) / x;
-            const auto light = [&](double phase) {
-              return static_cast<float>(1 + depth * std::cos(2 * kPi * kLamp_hz / kRate_hz * frame + phase));
-            };
-            add_disc(map, from_degrees(25, 150), 4, light(0) * Rgb(120, 125, 110));
-            add_disc(map, from_degrees(50, 20), 4, light(2 * kPi / 3) * Rgb(90, 95, 85));
-            if (frame < 48 || frame >= 72)
-              add_disc(map, from_degrees(40, 280), 3, light(0) * Rgb(150, 155, 140));
-          }};
-}
-
 // A real map of the whole sphere at one degree, of mean luminance 1000 cd/m²; null where the file is not there.
 MapPointer real_sphere(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return nullptr;
@@ -249,6 +229,27 @@ PolarMap sequence_map() {
   return PolarMap::make(kGrid, 3);
 }
 
+// Lamps on 50 Hz mains: their light swings at 100 Hz, which a camera of 60 frames a second sees at 20 Hz. Two
+// phases; the exposure of 2 ms averages a little. One lamp is switched off at frame 48, and on again at 72.
+Sequence mains_flicker() {
+  const MapPointer room = painted(room_radiance);
+  return {"mains flicker, lamp switched", kFrames, [=](int frame, PolarMap& map) {
+            copy(*room, map);
+            constexpr double kExposure_s = 0.002;
+            constexpr double kLamp_hz = 100;
+            constexpr double kRate_hz = 60;
+            const double x = kPi * kLamp_hz * kExposure_s;
+            const double depth = 0.35 * std::sin(x) / x;
+            const auto light = [&](double phase) {
+              return static_cast<float>(1 + depth * std::cos(2 * kPi * kLamp_hz / kRate_hz * frame + phase));
+            };
+            add_disc(map, from_degrees(25, 150), 4, light(0) * Rgb(120, 125, 110));
+            add_disc(map, from_degrees(50, 20), 4, light(2 * kPi / 3) * Rgb(90, 95, 85));
+            if (frame < kMainsSwitchedFrame || frame >= kMainsSwitchedFrame + 24)
+              add_disc(map, from_degrees(40, 280), 3, light(0) * Rgb(150, 155, 140));
+          }};
+}
+
 Sequence sun_at_rate(double rate_hz) {
   const MapPointer sky = painted(sky_radiance);
   return {"sun at " + std::to_string(static_cast<int>(rate_hz)) + " Hz",
@@ -277,7 +278,7 @@ std::vector<Sequence> sequences(const std::filesystem::path& maps) {
       video_wall(room),
       dusk(sky),
       hand_held("hand-held room", room_sphere),
-      mains_flicker(room),
+      mains_flicker(),
   };
   if (!maps.empty()) add_real(maps, all);
   return all;

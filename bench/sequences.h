@@ -28,6 +28,11 @@ PolarMap sequence_map();
 // (Radiance HDR or EXR, latitude–longitude, 2:1) also those found there of the few named in the source.
 std::vector<Sequence> sequences(const std::filesystem::path& maps = {});
 
+// Of those, the lamps on the mains: 100 Hz, 60 frames a second, exposed 2 ms; one of them goes dark in a frame and
+// comes back 24 frames later.
+Sequence mains_flicker();
+inline constexpr int kMainsSwitchedFrame = 48;
+
 // Two seconds and a half, at most 120 frames, of a sun that moves by 30 degrees a second over a sky with 1 % noise.
 Sequence sun_at_rate(double rate_hz);
 

@@ -37,7 +37,7 @@ std::vector<Row> lights_rows(const Options& options) {
     rows.push_back(row_from_json(std::to_string(entry.at("lights").get<int>()) + " lights",
                                  entry.at("method").get<std::string>(), entry));
   for (Row& row : rows) row.timing.runs = static_cast<std::size_t>(frames);
-  for (const auto& more : {error_rows, temporal_rows, growth_rows, rate_rows})
+  for (const auto& more : {error_rows, temporal_rows, flicker_rows, growth_rows, rate_rows})
     for (Row& row : more(options)) rows.push_back(std::move(row));
   return rows;
 }
