@@ -21,7 +21,7 @@ constexpr std::array kColours = {"#4477aa", "#ee6677", "#228833", "#aa3377", "#c
 
 std::string text_of(double v) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.4g", v);
+  std::snprintf(text, sizeof text, v >= 1e4 && v < 1e8 ? "%.0f" : "%.4g", v);
   return text;
 }
 
@@ -113,6 +113,7 @@ std::string frame_of(const Chart& chart, const Axis& x_axis, const Axis& y_axis)
   std::string svg = "<text x='" + at(kLeft) + "' y='20' font-size='14' font-weight='bold'>" +
                     escaped(chart.title) + "</text>\n";
   for (const double v : chart.x_ticks.empty() ? x_axis.ticks() : chart.x_ticks) {
+    if (!(x_axis.share(v) >= 0 && x_axis.share(v) <= 1)) continue;
     const std::string x = at(kLeft + width * x_axis.share(v));
     svg += "<line x1='" + x + "' x2='" + x + "' y1='" + at(kTop) + "' y2='" + at(kTop + height) +
            "' stroke='#ddd'/><text x='" + x + "' y='" + at(kTop + height + 16) + "' text-anchor='middle'>" +

@@ -8,7 +8,7 @@
 
 namespace lightwell::bench {
 
-// A line of a chart, or points on their own. Colours and marks go by the name, the same in every chart.
+// A line of a chart, or points on their own. Colours and marks go by the name, the same in all charts of a picture.
 struct Line {
   std::string name;
   std::vector<std::pair<double, double>> points;

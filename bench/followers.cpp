@@ -102,9 +102,12 @@ Follower havran_as_printed() {
 }  // namespace
 
 Follower method_follower(Method method) {
-  return {std::string(name(method)), [=](int count) {
+  return {std::string(name(method)),
+          [=](int count) {
             return sampler_of(method) ? sampler(method, count) : every_frame_anew(method, count);
-          }};
+          },
+          {},
+          sampler_of(method).has_value()};
 }
 
 Follower filtered_follower(Method method, TemporalChoice choice) {

@@ -21,6 +21,7 @@ struct Follower {
   std::string name;
   std::function<Stepper(int count)> make;
   std::vector<std::size_t> prefixes = {};  // also measured: the first n lights of each set
+  bool keeps_state = true;                 // else every frame is as the first
 };
 
 // A method as a probe runs it, frame after frame: with its state where it has one, without a filter.
