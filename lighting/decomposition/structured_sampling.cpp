@@ -6,7 +6,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <numeric>
+#include <queue>
+#include <utility>
 
 #include "lighting/decomposition/cell_powers.h"
 #include "lighting/decomposition/lit_bins.h"
@@ -54,6 +57,39 @@ std::vector<std::size_t> shares(const std::vector<double>& weights, const std::v
   return share;
 }
 
+// A region's bins by their distance from the nearest light so far. Lights only come nearer, so an entry that is
+// out of date is too far up, and is put where it belongs when it comes to the top.
+class FarthestBin {
+ public:
+  FarthestBin(const VoronoiCells& cells, std::vector<std::uint32_t> bins) : cells_(cells) {
+    std::vector<Entry> entries;
+    for (const std::uint32_t bin : bins) entries.push_back({cells.cosine(bin), bin});
+    queue_ = std::priority_queue<Entry>(std::less<Entry>(), std::move(entries));
+  }
+
+  std::uint32_t find() {
+    for (;;) {
+      const Entry top = queue_.top();
+      const double cosine = cells_.cosine(top.bin);
+      if (cosine == top.cosine) return top.bin;
+      queue_.pop();
+      queue_.push({cosine, top.bin});
+    }
+  }
+
+ private:
+  struct Entry {
+    double cosine;
+    std::uint32_t bin;
+    bool operator<(
+        const Entry& other) const {  // the queue has the largest on top: the least cosine, the first bin
+      return cosine != other.cosine ? cosine > other.cosine : bin > other.bin;
+    }
+  };
+  const VoronoiCells& cells_;
+  std::priority_queue<Entry> queue_;
+};
+
 class Strata {
  public:
   Strata(const PolarMap& map, const LitBins& bins)
@@ -70,28 +106,27 @@ class Strata {
     }
     const std::vector<std::size_t> share = shares(importance, room, count);
     for (std::size_t r = 0; r < regions_.size(); ++r)
-      for (std::size_t k = 0; k < share[r]; ++k)
-        cells_.add(k == 0 ? middle(regions_[r]) : farthest(regions_[r]));
+      if (share[r] > 0) place(regions_[r], share[r]);
     return lights_at_means(map, bins_, cells_);
   }
 
  private:
-  // The bin nearest to the region's luminance-weighted mean.
-  [[nodiscard]] Vec3d middle(const MapRegion& region) const {
-    Vec3d moment = Vec3d::Zero();
-    for (const std::uint32_t bin : region.bins) moment += bins_.power[lit_[bin]] * bins_.direction[lit_[bin]];
-    const auto nearer = [&](std::uint32_t a, std::uint32_t b) {
-      return bins_.direction[lit_[a]].dot(moment) < bins_.direction[lit_[b]].dot(moment);
-    };
-    return bins_.direction[lit_[*std::max_element(region.bins.begin(), region.bins.end(), nearer)]];
+  void place(const MapRegion& region, std::size_t count) {
+    std::vector<std::uint32_t> bins;
+    for (const std::uint32_t bin : region.bins) bins.push_back(lit_[bin]);
+    cells_.add(bins_.direction[middle(bins)]);
+    if (count == 1) return;
+    FarthestBin farthest(cells_, std::move(bins));
+    for (std::size_t k = 1; k < count; ++k) cells_.add(bins_.direction[farthest.find()]);
   }
 
-  // The region's bin farthest from every light so far.
-  [[nodiscard]] Vec3d farthest(const MapRegion& region) const {
-    const auto nearer = [&](std::uint32_t a, std::uint32_t b) {
-      return cells_.cosine(lit_[a]) < cells_.cosine(lit_[b]);
-    };
-    return bins_.direction[lit_[*std::min_element(region.bins.begin(), region.bins.end(), nearer)]];
+  // The bin nearest to their luminance-weighted mean.
+  [[nodiscard]] std::uint32_t middle(const std::vector<std::uint32_t>& bins) const {
+    Vec3d moment = Vec3d::Zero();
+    for (const std::uint32_t bin : bins) moment += bins_.power[bin] * bins_.direction[bin];
+    return *std::max_element(bins.begin(), bins.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return bins_.direction[a].dot(moment) < bins_.direction[b].dot(moment);
+    });
   }
 
   const LitBins& bins_;
