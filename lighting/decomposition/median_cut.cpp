@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "lighting/decomposition/lit_bins.h"
+
 namespace lightwell {
 namespace {
 
@@ -17,20 +19,17 @@ struct Region {
   double luminance;
 };
 
-Rgbd bin_illuminance(const PolarMap& map, std::size_t bin) {
-  return map.rgb(bin).cast<double>() * static_cast<double>(map.solid_angle_sr[bin]);
-}
-
 // Luminance below and left of every bin's corner: any rectangle is four look-ups (Crow 1984).
 class SummedArea {
  public:
-  explicit SummedArea(const PolarMap& map) : sectors_(static_cast<std::size_t>(map.grid.sectors)) {
+  SummedArea(const PolarMap& map, int seam) : sectors_(static_cast<std::size_t>(map.grid.sectors)) {
     const auto rings = static_cast<std::size_t>(map.grid.rings);
     table_.assign((rings + 1) * (sectors_ + 1), 0.0);
     for (std::size_t ring = 0; ring < rings; ++ring) {
       double row = 0;
       for (std::size_t sector = 0; sector < sectors_; ++sector) {
-        row += luminance(bin_illuminance(map, ring * sectors_ + sector));
+        row += luminance(
+            bin_illuminance(map, ring * sectors_ + (sector + static_cast<std::size_t>(seam)) % sectors_));
         table_[(ring + 1) * (sectors_ + 1) + sector + 1] = table_[ring * (sectors_ + 1) + sector + 1] + row;
       }
     }
@@ -47,9 +46,37 @@ class SummedArea {
   std::vector<double> table_;
 };
 
+// The sector opposite the light's mean azimuth, so that the cuts that every map begins with, its edges, pass where
+// little light is; that of the image's own edges (λ = π) where light has no azimuth to speak of.
+int seam_of(const PolarMap& map) {
+  constexpr double kLeastLean = 0.01;  // of the total: noise of a few per cent a bin turns nothing
+  const PolarGrid& grid = map.grid;
+  std::vector<double> column(static_cast<std::size_t>(grid.sectors), 0.0);
+  double total = 0;
+  std::size_t bin = 0;
+  for (int ring = 0; ring < grid.rings; ++ring) {
+    const double sine = std::sin(grid.theta_max_rad * (ring + 0.5) / grid.rings);
+    for (double& sum : column) {
+      const double power = luminance(bin_illuminance(map, bin++));
+      sum += sine * power;
+      total += power;
+    }
+  }
+  double x = 0;
+  double z = 0;
+  for (int sector = 0; sector < grid.sectors; ++sector) {
+    const double lambda = 2 * kPi * (sector + 0.5) / grid.sectors;
+    x += column[static_cast<std::size_t>(sector)] * std::sin(lambda);
+    z += column[static_cast<std::size_t>(sector)] * std::cos(lambda);
+  }
+  if (!(std::hypot(x, z) > kLeastLean * total)) return grid.sectors / 2;
+  const double turns = spherical_from_direction({-x, 0, -z}).lambda_rad / (2 * kPi);
+  return static_cast<int>(std::lround(turns * grid.sectors)) % grid.sectors;
+}
+
 class MedianCut {
  public:
-  explicit MedianCut(const PolarMap& map) : map_(map), area_(map) {}
+  explicit MedianCut(const PolarMap& map) : map_(map), seam_(seam_of(map)), area_(map, seam_) {}
 
   std::vector<DirectionalLight> lights(int count) {
     divide(static_cast<std::size_t>(count));
@@ -133,7 +160,8 @@ class MedianCut {
     Vec3d moment = Vec3d::Zero();
     Rgbd illuminance = Rgbd::Zero();
     for (int ring = region.ring0; ring < region.ring1; ++ring)
-      for (int sector = region.sector0; sector < region.sector1; ++sector) {
+      for (int place = region.sector0; place < region.sector1; ++place) {
+        const int sector = (place + seam_) % grid.sectors;
         const Rgbd value =
             bin_illuminance(map_, static_cast<std::size_t>(ring) * static_cast<std::size_t>(grid.sectors) +
                                       static_cast<std::size_t>(sector));
@@ -148,13 +176,14 @@ class MedianCut {
     // Dark regions, and whole spheres whose light cancels, are shown by their middle.
     const Vec3d middle =
         direction_from_spherical({grid.theta_max_rad * (region.ring0 + region.ring1) / (2.0 * grid.rings),
-                                  kPi * (region.sector0 + region.sector1) / grid.sectors});
+                                  kPi * (region.sector0 + region.sector1 + 2 * seam_) / grid.sectors});
     light.direction =
         (length > 1e-9 * luminance(illuminance) ? Vec3d(moment / length) : middle).cast<float>();
     return light;
   }
 
   const PolarMap& map_;
+  int seam_;  // the sector that regions are counted from
   SummedArea area_;
   std::vector<Region> regions_;
   std::vector<std::int32_t> parents_;

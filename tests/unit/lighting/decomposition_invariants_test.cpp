@@ -19,7 +19,7 @@ constexpr std::array kClaims = {
     MethodClaims{Method::structured,    0.05,  1.25,     1.7,        1.1},
     MethodClaims{Method::kollig_keller, 0.05,  1.18,     1.17,       1.5},
     MethodClaims{Method::penrose,       4,     4,        2,          1.1},
-    MethodClaims{Method::median_cut,    0.05,  1.26,     1.25,       1.1},
+    MethodClaims{Method::median_cut,    0.05,  1.1,      1.25,       1.1},
     MethodClaims{Method::uniform,       27,    2,        1.35,       1.1},
 };
 // clang-format on
