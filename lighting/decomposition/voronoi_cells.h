@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lighting/decomposition/lit_bins.h"
+#include "lighting/decomposition/sphere_grid.h"
 #include "lighting/vector.h"
 
 namespace lightwell {
@@ -44,24 +45,27 @@ class VoronoiCells {
   [[nodiscard]] bool may_hold(std::size_t block, std::uint32_t place) const;
 
  private:
-  void search(std::size_t block);
   void search_again(std::size_t block);
   void find_candidates(std::size_t block);
   void search_all(std::size_t bin);
   void take_nearer(std::size_t bin, std::span<const std::uint32_t> places);
   [[nodiscard]] bool reached(std::size_t block, const Vec3d& place) const;
   void set_reach(std::size_t block);
+  // From the middle of any block to a place that one of its bins may be nearest to.
+  [[nodiscard]] double largest_reach() const;
 
   const LitBins& bins_;
+  SphereGrid blocks_;  // by their middles
   std::vector<Vec3d> places_;
+  SphereGrid places_grid_;
   std::vector<std::uint32_t> cell_;  // [bins]
   std::vector<double> cosine_;       // [bins]
   std::vector<double> reach_;        // [blocks] largest distance (chord) of a bin to its place
   std::vector<Change> changes_;
-  std::vector<double> distance2_;                 // [places] to a block's middle
   std::vector<std::uint32_t> candidates_;         // of a block
   std::vector<bool> moving_;                      // [places]
   std::vector<std::vector<std::uint32_t>> near_;  // [blocks] moving places that may matter there
+  std::vector<std::uint32_t> touched_;            // blocks that have any
 };
 
 }  // namespace lightwell
