@@ -63,6 +63,14 @@ FramePathOptions frame_path_options(const Configuration& configuration) {
   return options;
 }
 
+std::optional<FewLightsOptions> fit_options(const Configuration& configuration) {
+  if (configuration.fit.lights == 0) return std::nullopt;
+  FewLightsOptions options;
+  options.lights = configuration.fit.lights;
+  if (configuration.fit.max_error > 0) options.max_error = configuration.fit.max_error;
+  return options;
+}
+
 Result<Calibration> choose_calibration(const Configuration& configuration) {
   const std::string& directory = configuration.calibration.directory;
   const std::string& source = configuration.source.address;

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "daemon/capture/capture_source.h"
 #include "daemon/configuration.h"
 #include "daemon/pipeline/frame_path.h"
 #include "lighting/calibration.h"
+#include "lighting/fit/few_lights.h"
 #include "lighting/result.h"
 
 namespace lightwell {
@@ -17,6 +19,9 @@ namespace lightwell {
 CaptureOptions capture_options(const Configuration& configuration);
 
 FramePathOptions frame_path_options(const Configuration& configuration);
+
+// Empty where nothing is to be fitted.
+std::optional<FewLightsOptions> fit_options(const Configuration& configuration);
 
 // The configured folder's calibration; without one, the recording's own or the simulation's own; else usage,
 // saying what to do. bad_input as the readers of the files say.

@@ -14,6 +14,7 @@
 
 #include "interface/atomic_file.h"
 #include "interface/dds_domain.h"
+#include "lighting/fit/few_lights.h"
 
 namespace lightwell {
 namespace {
@@ -135,6 +136,11 @@ const std::vector<Key>& keys() {
       integer("lights.order", "taps of the filter less one", &C::lights, &C::Lights::order, 2, 64),
       integer("lights.clusters", "most lights published, 0: all that were sampled", &C::lights,
               &C::Lights::clusters, 0, 100000),
+      integer("fit.lights", "ambient and so many lights fitted besides, for readers that afford few; 0: none",
+              &C::fit, &C::Fit::lights, 0, kMostFittedLights),
+      number("fit.max_error",
+             "above 0: the fewest of them that leave a white sphere's irradiance no larger relative error",
+             &C::fit, &C::Fit::max_error, 0, 1),
       text("record.directory", "where takes are written", &C::record, &C::Record::directory),
       text("record.codec", "raw is fast, ffv1 small; both lossless", &C::record, &C::Record::codec,
            {"raw", "ffv1"}),

@@ -55,6 +55,11 @@ struct Configuration {
     int clusters = 72;
     bool operator==(const Lights&) const = default;
   } lights;
+  struct Fit {
+    int lights = 4;
+    double max_error = 0;
+    bool operator==(const Fit&) const = default;
+  } fit;
   struct Record {
     std::string directory = ".";
     std::string codec = "raw";

@@ -11,6 +11,7 @@
 #include "daemon/alarm.h"
 #include "daemon/assembly.h"
 #include "daemon/clock.h"
+#include "daemon/pipeline/fit_worker.h"
 #include "daemon/pipeline/pipeline.h"
 #include "daemon/pipeline/snapshot.h"
 #include "daemon/publish/publisher.h"
@@ -59,6 +60,7 @@ struct Daemon::Parts {
   Recorder recorder;
   Pipeline pipeline;
   std::unique_ptr<Publisher> publisher;
+  std::unique_ptr<FitWorker> fits;
   std::unique_ptr<WebServer> web;
   std::string logged_mismatch;  // log_changes' own
 };
@@ -91,6 +93,8 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Configuration& configuration
                                     p.snapshots, *daemon);
   if (!publisher) return publisher.error();
   p.publisher = std::move(*publisher);
+  p.fits = std::make_unique<FitWorker>(p.snapshots, fit_options(configuration),
+                                       [&p](const FitSnapshot& fit) { p.publisher->send(fit); });
   auto web = WebServer::start({configuration.http.listen}, p.snapshots, *daemon);
   if (!web) return web.error();
   p.web = std::move(*web);
@@ -124,6 +128,7 @@ Status Daemon::reload(const Configuration& wanted) {
       std::move(source),
       std::make_shared<FramePath>(*calibration, frame_path_options(wanted), parts_->snapshots));
   if (!replaced) return replaced;
+  if (now.fit != wanted.fit) parts_->fits->set_options(fit_options(wanted));
   parts_->configuration = wanted;
   parts_->calibration = *calibration;
   return {};
@@ -139,6 +144,7 @@ void Daemon::stop() {
   parts_->pipeline.stop();
   parts_->snapshots.close();
   parts_->web.reset();
+  parts_->fits.reset();
   parts_->publisher.reset();
 }
 
@@ -181,6 +187,10 @@ DaemonStatus Daemon::status() const {
   status.recording.directory = std::filesystem::absolute(record_directory, ignored).string();
   status.alarm = alarm_for(status);
   return status;
+}
+
+std::optional<FitSnapshot> Daemon::newest_fit() const {
+  return parts_->fits->newest();
 }
 
 Status Daemon::start_recording(const std::string& file) {

@@ -32,6 +32,7 @@ class Daemon final : public DaemonControl {
   void stop();
 
   [[nodiscard]] DaemonStatus status() const override;
+  [[nodiscard]] std::optional<FitSnapshot> newest_fit() const override;
   Status start_recording(const std::string& file) override;
   Status stop_recording() override;
 

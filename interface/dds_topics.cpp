@@ -75,7 +75,7 @@ struct DdsWriter<Message>::Impl {
   Entity topic;
   Entity writer;
   typename Wire<Message>::Type wire{};
-  std::vector<std::conditional_t<std::is_same_v<Message, LightFrame>, lightwell_Light, std::uint16_t>> buffer;
+  typename Wire<Message>::Buffer buffer;
 };
 
 template <class Message>
@@ -256,9 +256,11 @@ const std::string& DdsReader<Message>::refusal() const {
 }
 
 template class DdsWriter<LightFrame>;
+template class DdsWriter<FitFrame>;
 template class DdsWriter<EnvironmentFrame>;
 template class DdsWriter<ProbeStatus>;
 template class DdsReader<LightFrame>;
+template class DdsReader<FitFrame>;
 template class DdsReader<EnvironmentFrame>;
 template class DdsReader<ProbeStatus>;
 

@@ -13,7 +13,7 @@
 
 namespace lightwell {
 
-// Writers and readers of the three topics of interface/lightwell.idl. Quality of service, and why:
+// Writers and readers of the four topics of interface/lightwell.idl. Quality of service, and why:
 //
 //   LightFrame        best effort, keep last 1, volatile. Only the newest frame matters: a lost one is not
 //   sent again,
@@ -23,6 +23,7 @@ namespace lightwell {
 //   EnvironmentFrame  reliable, keep last 1, transient local, never blocking. A map is many packets, too many
 //   for a small
 //                     socket buffer: lost ones are repaired. A late joiner gets the newest map at once.
+//   FitFrame          as EnvironmentFrame: small, and a late joiner gets the newest at once.
 //   ProbeStatus       reliable, keep last 1, transient local, never blocking. A late joiner gets the state at
 //   once.
 //
@@ -89,16 +90,20 @@ class DdsReader {
 };
 
 extern template class DdsWriter<LightFrame>;
+extern template class DdsWriter<FitFrame>;
 extern template class DdsWriter<EnvironmentFrame>;
 extern template class DdsWriter<ProbeStatus>;
 extern template class DdsReader<LightFrame>;
+extern template class DdsReader<FitFrame>;
 extern template class DdsReader<EnvironmentFrame>;
 extern template class DdsReader<ProbeStatus>;
 
 using LightWriter = DdsWriter<LightFrame>;
+using FitWriter = DdsWriter<FitFrame>;
 using EnvironmentWriter = DdsWriter<EnvironmentFrame>;
 using StatusWriter = DdsWriter<ProbeStatus>;
 using LightReader = DdsReader<LightFrame>;
+using FitReader = DdsReader<FitFrame>;
 using EnvironmentReader = DdsReader<EnvironmentFrame>;
 using StatusReader = DdsReader<ProbeStatus>;
 

@@ -125,13 +125,20 @@ LightSet LightFrame::light_set() const {
   return set;
 }
 
-std::string to_wire(const LightFrame& message, lightwell_LightFrame& wire,
-                    std::vector<lightwell_Light>& buffer) {
+std::string to_wire(const LightFrame& message, lightwell_LightFrame& wire, Wire<LightFrame>::Buffer& whole) {
   if (message.lights.size() > kMaxWireLights)
     return std::to_string(message.lights.size()) + " lights, at most " + std::to_string(kMaxWireLights);
   header_to_wire(message.header, wire.header);
   wire.has_parents = message.has_parents;
   set_rgb(wire.ambient, message.ambient);
+  if (!message.harmonics.empty() && message.harmonics.size() != kWireHarmonics)
+    return std::to_string(message.harmonics.size()) + " harmonics, must be 25 or none";
+  whole.harmonics.resize(3 * message.harmonics.size());
+  for (std::size_t i = 0; i < whole.harmonics.size(); ++i)
+    whole.harmonics[i] = message.harmonics[i / 3][static_cast<Eigen::Index>(i % 3)];
+  const auto numbers = static_cast<std::uint32_t>(whole.harmonics.size());
+  wire.harmonics = {numbers, numbers, whole.harmonics.data(), false};
+  std::vector<lightwell_Light>& buffer = whole.lights;
   buffer.resize(message.lights.size());
   for (std::size_t i = 0; i < buffer.size(); ++i) {
     const DirectionalLight& light = message.lights[i];
@@ -152,6 +159,11 @@ std::string from_wire(const lightwell_LightFrame& wire, LightFrame& message) {
   const std::span lights(wire.lights._buffer, wire.lights._length);
   for (std::size_t i = 0; i < lights.size(); ++i)
     if (auto wrong = check_light(lights[i], i, wire.has_parents); !wrong.empty()) return wrong;
+  const std::span harmonics(wire.harmonics._buffer, wire.harmonics._length);
+  if (!harmonics.empty() && harmonics.size() != 3 * kWireHarmonics)
+    return "harmonics are neither 75 nor none";
+  if (!std::all_of(harmonics.begin(), harmonics.end(), [](float v) { return std::isfinite(v); }))
+    return "harmonics are not finite";
 
   header_from_wire(wire.header, wire.probe, message.header);
   message.has_parents = wire.has_parents;
@@ -165,6 +177,70 @@ std::string from_wire(const lightwell_LightFrame& wire, LightFrame& message) {
     light.illuminance = get_rgb(lights[i].illuminance);
     light.id = lights[i].id;
     light.parent = wire.has_parents ? lights[i].parent : -1;
+  }
+  message.harmonics.resize(harmonics.size() / 3);
+  for (std::size_t i = 0; i < harmonics.size(); ++i)
+    message.harmonics[i / 3][static_cast<Eigen::Index>(i % 3)] = harmonics[i];
+  return {};
+}
+
+LightSet FitFrame::light_set() const {
+  LightSet set;
+  set.method = "fit";
+  set.coverage = header.coverage;
+  set.total_illuminance = header.total_illuminance;
+  set.ambient = ambient;
+  for (const Light& light : lights) set.lights.push_back(light.light);
+  return set;
+}
+
+std::string to_wire(const FitFrame& message, lightwell_FitFrame& wire,
+                    std::vector<lightwell_FittedLight>& buffer) {
+  if (message.lights.size() > kMaxWireFittedLights)
+    return std::to_string(message.lights.size()) + " lights, at most " + std::to_string(kMaxWireFittedLights);
+  header_to_wire(message.header, wire.header);
+  set_rgb(wire.ambient, message.ambient);
+  wire.residual = message.residual;
+  set_text(wire.remarks, message.remarks);
+  buffer.resize(message.lights.size());
+  for (std::size_t i = 0; i < buffer.size(); ++i) {
+    const FitFrame::Light& light = message.lights[i];
+    for (int c = 0; c < 3; ++c) buffer[i].direction[c] = light.light.direction[c];
+    set_rgb(buffer[i].illuminance, light.light.illuminance);
+    buffer[i].id = light.light.id;
+    buffer[i].direction_sigma_rad = light.direction_sigma_rad;
+  }
+  const auto count = static_cast<std::uint32_t>(buffer.size());
+  wire.lights = {count, count, buffer.data(), false};
+  return {};
+}
+
+std::string from_wire(const lightwell_FitFrame& wire, FitFrame& message) {
+  if (const char* wrong = check_header(wire.header)) return wrong;
+  if (!is_power(wire.ambient)) return "ambient is not finite and >= 0";
+  if (!(std::isfinite(wire.residual) && wire.residual >= 0)) return "residual is not finite and >= 0";
+  if (!is_printable(wire.remarks)) return "remarks have control characters";
+  if (wire.lights._length > kMaxWireFittedLights) return "too many lights";
+  const std::span lights(wire.lights._buffer, wire.lights._length);
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const auto wrong = [&](const char* what) { return "light " + std::to_string(i) + ": " + what; };
+    if (!(std::abs(squared_norm(lights[i].direction) - 1) <= 2e-3f)) return wrong("direction is not unit");
+    if (!is_power(lights[i].illuminance)) return wrong("illuminance is not finite and >= 0");
+    if (!(lights[i].direction_sigma_rad >= 0)) return wrong("direction_sigma_rad is not >= 0");
+  }
+
+  header_from_wire(wire.header, wire.probe, message.header);
+  message.ambient = get_rgb(wire.ambient);
+  message.residual = wire.residual;
+  message.remarks = get_text(wire.remarks);
+  message.lights.resize(lights.size());
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    DirectionalLight& light = message.lights[i].light;
+    light.direction = {lights[i].direction[0], lights[i].direction[1], lights[i].direction[2]};
+    if (std::abs(squared_norm(lights[i].direction) - 1) > 1e-6f) light.direction.normalize();
+    light.illuminance = get_rgb(lights[i].illuminance);
+    light.id = lights[i].id;
+    message.lights[i].direction_sigma_rad = lights[i].direction_sigma_rad;
   }
   return {};
 }
@@ -229,7 +305,7 @@ std::string from_wire(const lightwell_EnvironmentFrame& wire, EnvironmentFrame& 
   return {};
 }
 
-std::string to_wire(const ProbeStatus& message, lightwell_ProbeStatus& wire, std::vector<std::uint16_t>&) {
+std::string to_wire(const ProbeStatus& message, lightwell_ProbeStatus& wire, Wire<ProbeStatus>::Buffer&) {
   set_text(wire.version, message.version);
   wire.uptime_s = message.uptime_s;
   set_text(wire.source, message.source);

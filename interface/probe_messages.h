@@ -33,8 +33,24 @@ struct LightFrame {
   bool has_parents = false;
   Rgb ambient = Rgb::Zero();
   std::vector<DirectionalLight> lights;
+  std::vector<Rgb> harmonics;  // 25, or none: not said
 
   // As a light set of method "live"; for take_lights and the renderer.
+  [[nodiscard]] LightSet light_set() const;
+};
+
+struct FitFrame {
+  FrameHeader header;
+  Rgb ambient = Rgb::Zero();
+  float residual = 0;
+  std::string remarks;
+  struct Light {
+    DirectionalLight light;
+    float direction_sigma_rad = 0;
+  };
+  std::vector<Light> lights;
+
+  // As a light set of method "fit".
   [[nodiscard]] LightSet light_set() const;
 };
 

@@ -67,6 +67,7 @@ Status FramePath::prepare(const FrameFormat& format, double rate_hz) {
     radiometer_ = std::move(*radiometer);
     shape_ = radiometer_->make_map();
     shape_number_ = next_shape_number();
+    harmonics_.emplace(shape_.grid);
     format_ = format;
   }
   auto lights = LightPipeline::create(shape_.grid, shape_.channels, filter_for(rate_hz));
@@ -102,6 +103,10 @@ void FramePath::process(const FrameInfo& info, std::span<const std::byte> codes)
   forget_after_gap(info.capture_mono_ns);
   const std::span<const DirectionalLight> lights = lights_->process(out.map);
   out.lights.assign(lights.begin(), lights.end());
+
+  const RadianceHarmonics& harmonics = harmonics_->project(out.map);
+  for (std::size_t i = 0; i < out.harmonics.size(); ++i)
+    out.harmonics[i] = harmonics.row(static_cast<Eigen::Index>(i)).transpose().cast<float>();
 
   out.number = published() + 1;
   out.sequence = info.sequence;

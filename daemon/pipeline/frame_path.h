@@ -13,6 +13,7 @@
 #include "daemon/pipeline/snapshot.h"
 #include "lighting/calibration.h"
 #include "lighting/light_pipeline.h"
+#include "lighting/map_harmonics.h"
 #include "lighting/radiometer.h"
 #include "lighting/result.h"
 
@@ -64,6 +65,7 @@ class FramePath {
 
   std::optional<Radiometer> radiometer_;
   std::optional<LightPipeline> lights_;
+  std::optional<MapHarmonics> harmonics_;
   FrameFormat format_;
   double rate_hz_ = 0;
   PolarMap shape_;  // an empty map of the current shape

@@ -12,6 +12,7 @@
 
 #include "lighting/frame_format.h"
 #include "lighting/light_set.h"
+#include "lighting/map_harmonics.h"
 #include "lighting/polar_map.h"
 
 namespace lightwell {
@@ -28,11 +29,12 @@ struct Snapshot {
   double exposure_us = 0;
   std::array<char, 17> calibration_id{};  // zero-terminated
   Coverage coverage = Coverage::hemisphere;
-  Rgb total_illuminance = Rgb::Zero();     // filtered, what the lights stand for
-  Rgb measured_illuminance = Rgb::Zero();  // of this very frame's map
-  float delay_frames = 0;                  // lag of the lights behind the map
-  std::string method;                      // of the lights, by name
-  std::vector<DirectionalLight> lights;    // capacity is kept from frame to frame
+  Rgb total_illuminance = Rgb::Zero();                           // filtered, what the lights stand for
+  Rgb measured_illuminance = Rgb::Zero();                        // of this very frame's map
+  float delay_frames = 0;                                        // lag of the lights behind the map
+  std::string method;                                            // of the lights, by name
+  std::vector<DirectionalLight> lights;                          // capacity is kept from frame to frame
+  std::array<Rgb, harmonic_count(kRadianceDegree)> harmonics{};  // of the map, lighting/map_harmonics.h
   PolarMap map;
   std::uint64_t shape = 0;  // changes with camera or calibration; the frame path's own
 };

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "daemon/capture/capture_source.h"
+#include "daemon/pipeline/fit_worker.h"
 
 namespace lightwell {
 
@@ -48,6 +50,8 @@ class DaemonControl {
   // file: a plain name ("take.mkv"), inside the daemon's record directory; usage for anything else.
   virtual Status start_recording(const std::string& file) = 0;
   virtual Status stop_recording() = 0;
+  // The newest frame's ambient and few lights; empty where there is none.
+  [[nodiscard]] virtual std::optional<FitSnapshot> newest_fit() const { return std::nullopt; }
 };
 
 }  // namespace lightwell

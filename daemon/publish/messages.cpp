@@ -41,6 +41,31 @@ void fill_message(const Snapshot& snapshot, LightFrame& message) {
   fill_header(snapshot, message.header);
   message.lights = snapshot.lights;
   message.has_parents = lights_form_a_tree(message.lights);
+  message.harmonics.assign(snapshot.harmonics.begin(), snapshot.harmonics.end());
+}
+
+void fill_message(const FitSnapshot& snapshot, FitFrame& message) {
+  const FewLightsFit& fit = snapshot.fit;
+  const LightSet set = light_set(fit);
+  FrameHeader& header = message.header;
+  header.number = snapshot.number;
+  header.sequence = snapshot.sequence;
+  header.capture_mono_ns = snapshot.capture_mono_ns;
+  header.capture_utc_ns = snapshot.capture_utc_ns;
+  header.publish_mono_ns = snapshot.publish_mono_ns;
+  header.calibration_id = snapshot.calibration_id.data();
+  header.coverage = set.coverage;
+  header.measured_part = snapshot.measured_part;
+  header.total_illuminance = set.total_illuminance;
+  header.delay_frames = 0;
+  message.ambient = set.ambient;
+  message.residual = static_cast<float>(fit.residual);
+  message.remarks.clear();
+  for (const std::string& remark : remarks(fit))
+    message.remarks += (message.remarks.empty() ? "" : "; ") + remark;
+  message.lights.resize(set.lights.size());
+  for (std::size_t i = 0; i < set.lights.size(); ++i)
+    message.lights[i] = {set.lights[i], static_cast<float>(fit.lights[i].direction_sigma_rad)};
 }
 
 void fill_message(const Snapshot& snapshot, EnvironmentFrame& message) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "daemon/pipeline/fit_worker.h"
 #include "daemon/pipeline/snapshot.h"
 #include "daemon/pipeline/status.h"
 #include "interface/probe_messages.h"
@@ -11,6 +12,7 @@ namespace lightwell {
 // What goes out, from what the frame path and the daemon say. Memory of the messages is reused.
 void fill_message(const Snapshot& snapshot, LightFrame& message);
 void fill_message(const Snapshot& snapshot, EnvironmentFrame& message);
+void fill_message(const FitSnapshot& fit, FitFrame& message);
 ProbeStatus status_message(const DaemonStatus& status);
 
 // Every light but the first names an earlier one as its parent.

@@ -29,11 +29,14 @@ Result<std::unique_ptr<Publisher>> Publisher::start(const PublisherOptions& opti
   std::unique_ptr<Publisher> made(new Publisher(options, snapshots, control));
   auto lights = LightWriter::create(*domain, options.probe);
   if (!lights) return lights.error();
+  auto fits = FitWriter::create(*domain, options.probe);
+  if (!fits) return fits.error();
   auto environments = EnvironmentWriter::create(*domain, options.probe);
   if (!environments) return environments.error();
   auto status = StatusWriter::create(*domain, options.probe);
   if (!status) return status.error();
   made->lights_ = std::move(lights).value();
+  made->fits_ = std::move(fits).value();
   made->environments_ = std::move(environments).value();
   made->status_ = std::move(status).value();
   made->lights_thread_ = std::thread([self = made.get()] { self->run_lights(); });
@@ -52,7 +55,12 @@ Publisher::~Publisher() {
 }
 
 PublisherCounters Publisher::counters() const {
-  return {lights_sent_.load(), environments_sent_.load(), dropped_.load()};
+  return {lights_sent_.load(), fits_sent_.load(), environments_sent_.load(), dropped_.load()};
+}
+
+void Publisher::send(const FitSnapshot& fit) {
+  fill_message(fit, fit_message_);
+  count(fits_->write(fit_message_), &fits_sent_);
 }
 
 bool Publisher::pause(std::chrono::nanoseconds time) {

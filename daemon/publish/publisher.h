@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 
+#include "daemon/pipeline/fit_worker.h"
 #include "daemon/pipeline/snapshot.h"
 #include "daemon/pipeline/status.h"
 #include "interface/dds_topics.h"
@@ -24,6 +25,7 @@ struct PublisherOptions {
 
 struct PublisherCounters {
   std::uint64_t lights = 0;        // light frames sent, repeats not counted
+  std::uint64_t fits = 0;          // ambient and few lights, sent
   std::uint64_t environments = 0;  // radiance maps sent
   std::uint64_t dropped = 0;       // messages of any topic that could not be sent
 };
@@ -40,6 +42,8 @@ class Publisher {
   Publisher(const Publisher&) = delete;
   Publisher& operator=(const Publisher&) = delete;
 
+  // A fit, at once, on the caller's thread; one thread at a time.
+  void send(const FitSnapshot& fit);
   [[nodiscard]] PublisherCounters counters() const;
   // DDS readers of the lights now.
   [[nodiscard]] int readers() const { return lights_->readers(); }
@@ -57,9 +61,11 @@ class Publisher {
   SnapshotChannel& snapshots_;
   const DaemonControl& control_;
   std::unique_ptr<LightWriter> lights_;
+  std::unique_ptr<FitWriter> fits_;
+  FitFrame fit_message_;
   std::unique_ptr<EnvironmentWriter> environments_;
   std::unique_ptr<StatusWriter> status_;
-  std::atomic<std::uint64_t> lights_sent_{0}, environments_sent_{0}, dropped_{0};
+  std::atomic<std::uint64_t> lights_sent_{0}, fits_sent_{0}, environments_sent_{0}, dropped_{0};
   std::mutex mutex_;
   std::condition_variable stop_wanted_;
   bool stopping_ = false;

@@ -63,7 +63,8 @@ WebAnswer WebAnswers::status() {
 WebAnswer WebAnswers::lights() {
   const auto lease = snapshots_.wait_newer(0, 0ms);
   if (!lease) return error_answer(503, kNoFrame);
-  return {200, "application/json", lights_json(*lease)};
+  const auto fit = control_.newest_fit();
+  return {200, "application/json", lights_json(*lease, fit ? &*fit : nullptr)};
 }
 
 WebAnswer WebAnswers::metrics() {

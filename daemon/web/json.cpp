@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/publish/messages.h"
+#include "interface/fit_json.h"
 #include "interface/light_set_io.h"
 
 namespace lightwell {
@@ -44,6 +45,13 @@ void append_triple(std::string& text, const char* key, const Vector& v) {
   text += ',';
   append(text, v[2]);
   text += ']';
+}
+
+// An object that goes on: light sets write their own numbers, shortest and exact, and are joined as text.
+std::string opened(const Json& object) {
+  std::string text = object.dump(-1, ' ', false, Json::error_handler_t::replace);
+  text.back() = ',';
+  return text;
 }
 
 }  // namespace
@@ -89,8 +97,7 @@ std::string status_json(const DaemonStatus& status) {
   });
 }
 
-std::string lights_json(const Snapshot& snapshot) {
-  const std::string set = light_set_to_json(light_set(snapshot), true);
+std::string lights_json(const Snapshot& snapshot, const FitSnapshot* fit) {
   Json frame{{"number", snapshot.number},
              {"sequence", snapshot.sequence},
              {"capture_time_ns", snapshot.capture_mono_ns},
@@ -99,9 +106,23 @@ std::string lights_json(const Snapshot& snapshot) {
              {"calibration_id", std::string(snapshot.calibration_id.data())},
              {"measured_part", snapshot.map.coverage},
              {"delay_frames", snapshot.delay_frames}};
-  // The light set writes its own numbers, shortest and exact: join the two objects as text.
-  std::string text = frame.dump(-1, ' ', false, Json::error_handler_t::replace);
-  text.back() = ',';
+  std::string text = opened(frame);
+  text += "\"sh\":[";
+  const char* separator = "";
+  for (const Rgb& coefficient : snapshot.harmonics) {
+    append_triple(text, separator, coefficient);
+    separator = ",";
+  }
+  text += "],";
+  if (fit != nullptr) {
+    const Json of_frame{{"number", fit->number},
+                        {"sequence", fit->sequence},
+                        {"capture_time_ns", fit->capture_mono_ns},
+                        {"publish_time_ns", fit->publish_mono_ns}};
+    const std::string set = fit_to_json(fit->fit, true);
+    text += "\"fit\":" + opened(of_frame) + set.substr(1, set.rfind('}')) + ",";
+  }
+  const std::string set = light_set_to_json(light_set(snapshot), true);
   return text + set.substr(set.find('{') + 1);
 }
 

@@ -22,7 +22,7 @@ namespace lightwell {
 struct FewLightsOptions {
   int lights = 4;  // 1 to 16: so many, or where max_error is given at most so many
   // Relative RMSE of the probe, above 0 to 1: the fewest lights that reach it.
-  std::optional<double> max_error;
+  std::optional<double> max_error{};
   // Fits the probe's shadow on the ground as well (lighting/fit/shadow_ground.h): tells more than six lights apart.
   bool with_shadow = false;
 };

@@ -36,6 +36,14 @@ class FakeControl : public DaemonControl {
     status_.recording.active = false;
     return {};
   }
+  [[nodiscard]] std::optional<FitSnapshot> newest_fit() const override {
+    const std::scoped_lock lock(mutex_);
+    return fit_;
+  }
+  void set_fit(const FitSnapshot& fit) {
+    const std::scoped_lock lock(mutex_);
+    fit_ = fit;
+  }
   template <class Change>
   void change(Change change) {
     const std::scoped_lock lock(mutex_);
@@ -45,6 +53,7 @@ class FakeControl : public DaemonControl {
  private:
   mutable std::mutex mutex_;
   DaemonStatus status_;
+  std::optional<FitSnapshot> fit_;
 };
 
 inline Snapshot snapshot_shape(int channels = 3, std::size_t lights = 72) {
@@ -73,6 +82,9 @@ inline void paint_sky(Snapshot& snapshot, float sun_azimuth_rad, std::size_t lig
       for (int c = 0; c < map.channels; ++c) map.plane(c)[bin] = map.channels == 1 ? luminance(l) : l[c];
       total += map.rgb(bin) * map.solid_angle_sr[bin];
     }
+  const RadianceHarmonics harmonics = MapHarmonics(map.grid).project(map);
+  for (std::size_t i = 0; i < snapshot.harmonics.size(); ++i)
+    snapshot.harmonics[i] = harmonics.row(static_cast<Eigen::Index>(i)).transpose().cast<float>();
   snapshot.lights.clear();
   Rgb sum = Rgb::Zero();
   for (std::size_t i = 0; i < lights; ++i) {

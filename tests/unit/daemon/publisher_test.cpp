@@ -93,6 +93,46 @@ TEST_F(PublisherTest, MapsAndStatusArriveToo) {
   EXPECT_EQ(status.alarm, "frames do not arrive");
 }
 
+TEST_F(PublisherTest, HarmonicsComeWithTheLights) {
+  const auto reader = LightReader::create(domain_).value();
+  const auto publisher = start();
+  publish(channel_, 1);
+  LightFrame frame;
+  ASSERT_TRUE(reader->take(frame, kPatience)) << reader->refusal();
+  const auto lease = channel_.wait_newer(0, 0ms);
+  ASSERT_EQ(frame.harmonics.size(), 25u);
+  for (std::size_t i = 0; i < 25; ++i) EXPECT_TRUE((frame.harmonics[i] == lease->harmonics[i]).all());
+}
+
+TEST_F(PublisherTest, FitsReachEvenALateReader) {
+  const auto publisher = start();
+  publish(channel_, 9);
+  const auto lease = channel_.wait_newer(0, 0ms);
+  FitSnapshot fit;
+  fit.number = 9;
+  fit.sequence = 1009;
+  fit.fit = fit_few_lights(lease->map, {.lights = 3}).value();
+  publisher->send(fit);
+  const auto reader = FitReader::create(domain_).value();
+  FitFrame frame;
+  ASSERT_TRUE(reader->take(frame, kPatience)) << reader->refusal();
+  EXPECT_EQ(frame.header.probe, "test");
+  EXPECT_EQ(frame.header.number, 9u);
+  EXPECT_EQ(frame.header.sequence, 1009u);
+  EXPECT_EQ(frame.residual, static_cast<float>(fit.fit.residual));
+  const LightSet sent = light_set(fit.fit), received = frame.light_set();
+  EXPECT_EQ(received.method, "fit");
+  ASSERT_EQ(received.lights.size(), sent.lights.size());
+  ASSERT_GE(sent.lights.size(), 1u);
+  for (std::size_t i = 0; i < sent.lights.size(); ++i) {
+    EXPECT_EQ(received.lights[i].direction, sent.lights[i].direction);
+    EXPECT_TRUE((received.lights[i].illuminance == sent.lights[i].illuminance).all());
+    EXPECT_EQ(received.lights[i].id, sent.lights[i].id);
+  }
+  EXPECT_TRUE((received.ambient == sent.ambient).all());
+  EXPECT_EQ(publisher->counters().fits, 1u);
+}
+
 TEST_F(PublisherTest, NoMapsWhereNoneAreWanted) {
   const auto publisher = start(0);
   const auto lights = LightReader::create(domain_).value();

@@ -201,6 +201,30 @@ TEST_F(WebServerTest, LightsAreALightSetWithTheFramesNumbersBesideIt) {
   EXPECT_EQ(frame["calibration_id"], "0123456789abcdef");
 }
 
+TEST_F(WebServerTest, HarmonicsAndTheFitStandBesideTheLights) {
+  publish(channel_, 5, 1.0f);
+  const auto lease = channel_.wait_newer(0, 0ms);
+  json frame = json::parse(get("/api/v1/lights").body);
+  ASSERT_EQ(frame["sh"].size(), 25u);
+  EXPECT_EQ(frame["sh"][3][1].get<float>(), lease->harmonics[3][1]);
+  EXPECT_FALSE(frame.contains("fit"));
+  FitSnapshot fit;
+  fit.number = 4;
+  fit.sequence = 1004;
+  fit.fit = fit_few_lights(lease->map, {.lights = 2}).value();
+  control_.set_fit(fit);
+  const std::string body = get("/api/v1/lights").body;
+  EXPECT_TRUE(light_set_from_json(body, "lights"));
+  frame = json::parse(body);
+  EXPECT_EQ(frame["fit"]["sequence"], 1004);
+  const auto set = light_set_from_json(frame["fit"].dump(), "fit");
+  ASSERT_TRUE(set) << set.error().message;
+  EXPECT_EQ(set->method, "fit");
+  ASSERT_EQ(set->lights.size(), light_set(fit.fit).lights.size());
+  EXPECT_EQ(set->lights[0].direction, light_set(fit.fit).lights[0].direction);
+  EXPECT_EQ(frame["fit"]["residual"], fit.fit.residual);
+}
+
 TEST_F(WebServerTest, EnvironmentExrHoldsTheMapsRadianceInItsPlace) {
   publish(channel_, 1, 1.0f);
   const auto response = get("/api/v1/environment.exr");

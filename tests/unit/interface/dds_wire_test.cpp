@@ -21,10 +21,23 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // A good frame of two lights as a stranger would send it; the tests spoil one thing each.
 struct Lights {
   lightwell_Light lights[2] = {{{0, 1, 0}, {1, 2, 3}, 1, -1}, {{1, 0, 0}, {1, 2, 3}, 2, 0}};
+  float harmonics[75] = {1, 2, 3};
   lightwell_LightFrame frame{};
   Lights() {
     std::strcpy(frame.probe, "stranger");
     frame.has_parents = true;
+    frame.lights = {2, 2, lights, false};
+    frame.harmonics = {75, 75, harmonics, false};
+  }
+};
+
+struct Fit {
+  lightwell_FittedLight lights[2] = {{{0, 1, 0}, {1, 2, 3}, 1, 0.1f}, {{1, 0, 0}, {1, 2, 3}, 2, kInfinity}};
+  lightwell_FitFrame frame{};
+  Fit() {
+    std::strcpy(frame.probe, "stranger");
+    std::strcpy(frame.remarks, "1 light merged");
+    frame.residual = 0.02f;
     frame.lights = {2, 2, lights, false};
   }
 };
@@ -48,6 +61,16 @@ TEST(DdsWire, GoodMessagesOfAStrangerAreRead) {
   EXPECT_EQ(from_wire(Lights().frame, lights), "");
   EXPECT_EQ(lights.header.probe, "stranger");
   EXPECT_EQ(lights.lights.size(), 2u);
+  ASSERT_EQ(lights.harmonics.size(), 25u);
+  EXPECT_TRUE((lights.harmonics[0] == Rgb(1, 2, 3)).all());
+  Lights older;  // whose writer knows no harmonics
+  older.frame.harmonics = {};
+  EXPECT_EQ(from_wire(older.frame, lights), "");
+  EXPECT_TRUE(lights.harmonics.empty());
+  FitFrame fit;
+  EXPECT_EQ(from_wire(Fit().frame, fit), "");
+  EXPECT_EQ(fit.remarks, "1 light merged");
+  EXPECT_EQ(fit.lights[1].direction_sigma_rad, kInfinity);
   EnvironmentFrame map;
   EXPECT_EQ(from_wire(Map().frame, map), "");
   EXPECT_EQ(map.map.grid.rings, 3);
@@ -72,12 +95,42 @@ TEST(DdsWire, MalformedLightsAreRefusedAndLeaveTheMessageAlone) {
       [](Lights& l) { l.frame.header.delay_frames = kInfinity; },
       [](Lights& l) { std::strcpy(l.frame.header.timecode, "\x1b[2J"); },
       [](Lights& l) { l.frame.lights._length = 1u << 20; },
+      [](Lights& l) { l.frame.harmonics._length = 74; },
+      [](Lights& l) { l.harmonics[74] = kNan; },
   };
   int index = 0;
   for (const auto& spoil : spoilers) {
     Lights spoilt;
     spoil(spoilt);
     LightFrame message;
+    message.header.number = 99;
+    EXPECT_NE(from_wire(spoilt.frame, message), "") << "spoiler " << index;
+    EXPECT_EQ(message.header.number, 99u);
+    EXPECT_TRUE(message.lights.empty());
+    ++index;
+  }
+}
+
+TEST(DdsWire, MalformedFitsAreRefusedAndLeaveTheMessageAlone) {
+  const std::function<void(Fit&)> spoilers[] = {
+      [](Fit& f) { f.lights[1].direction[0] = kNan; },
+      [](Fit& f) { f.lights[1].direction[0] = 0.5f; },
+      [](Fit& f) { f.lights[0].illuminance[2] = -1; },
+      [](Fit& f) { f.lights[0].illuminance[2] = kInfinity; },
+      [](Fit& f) { f.lights[0].direction_sigma_rad = kNan; },
+      [](Fit& f) { f.lights[0].direction_sigma_rad = -1; },
+      [](Fit& f) { f.frame.ambient[1] = kNan; },
+      [](Fit& f) { f.frame.residual = -0.1f; },
+      [](Fit& f) { f.frame.residual = kNan; },
+      [](Fit& f) { f.frame.header.measured_part = 2; },
+      [](Fit& f) { std::strcpy(f.frame.remarks, "\x1b[2J"); },
+      [](Fit& f) { f.frame.lights._length = 17; },
+  };
+  int index = 0;
+  for (const auto& spoil : spoilers) {
+    Fit spoilt;
+    spoil(spoilt);
+    FitFrame message;
     message.header.number = 99;
     EXPECT_NE(from_wire(spoilt.frame, message), "") << "spoiler " << index;
     EXPECT_EQ(message.header.number, 99u);
