@@ -200,6 +200,29 @@ TEST_F(Chain, ReloadChangesTheLightsWithoutAPause) {
   EXPECT_EQ(get("/api/v1/lights").at("lights").size(), 9u);
 }
 
+TEST_F(Chain, AmbientAndFewLightsAreFittedBesideTheLightsAndFollowAReload) {
+  start_camera({"--scenario", "static", "--size", "320x240", "--rate", "30"});
+  start_daemon();
+  ASSERT_TRUE(eventually([&] { return get("/api/v1/lights").contains("fit"); })) << daemon_->stderr_text();
+  const auto set = get("/api/v1/lights");
+  EXPECT_GE(set.at("fit").at("lights").size(), 1u);
+  EXPECT_LE(set.at("fit").at("lights").size(), 4u);
+  EXPECT_LT(set.at("fit").at("residual").get<double>(), 0.2);
+  // What the fit's map shines with is what the harmonics' constant says: Σ L Ω = √(4π) L_00; of other frames of a still
+  // scene, with the camera's noise.
+  const double constant = set.at("sh").at(0).at(1).get<double>() * std::sqrt(4 * kPi);
+  EXPECT_NEAR(set.at("fit").at("total_illuminance").at(1).get<double>() / constant, 1, 0.02);
+  write_configuration("[fit]\nlights = 1\n");
+  daemon_->send(SIGHUP);
+  EXPECT_TRUE(eventually([&] {
+    const auto now = get("/api/v1/lights");
+    return now.contains("fit") && now.at("fit").at("lights").size() == 1;
+  })) << daemon_->stderr_text();
+  write_configuration("[fit]\nlights = 0\n");
+  daemon_->send(SIGHUP);
+  EXPECT_TRUE(eventually([&] { return !get("/api/v1/lights").contains("fit"); })) << daemon_->stderr_text();
+}
+
 TEST_F(Chain, RecordedTakeReplaysTheSameLightsBitForBit) {
   start_camera({"--scenario", "studio", "--size", "160x120", "--rate", "30"});
   start_daemon();

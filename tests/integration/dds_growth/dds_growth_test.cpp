@@ -51,7 +51,7 @@ TEST_F(NextVersion, WriterIsUnderstoodByTodaysReader) {
   ASSERT_GT(writer, 0);
   lightwell_next_Light lights[2] = {{{0, 1, 0}, {1, 2, 3}, 11, -1, 0.5f},
                                     {{1, 0, 0}, {4, 5, 6}, 12, 0, 0.25f}};
-  float harmonics[3] = {7, 8, 9};
+  float zones[3] = {7, 8, 9};
   lightwell_next_LightFrame sent{};
   std::strcpy(sent.probe, "next");
   sent.header.camera_sequence = 42;
@@ -59,7 +59,7 @@ TEST_F(NextVersion, WriterIsUnderstoodByTodaysReader) {
   sent.header.clock_offset_s = 1e300;
   sent.has_parents = true;
   sent.lights = {2, 2, lights, false};
-  sent.harmonics = {3, 3, harmonics, false};
+  sent.zones = {3, 3, zones, false};
   LightFrame received;
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   bool taken = false;
@@ -104,7 +104,7 @@ TEST_F(NextVersion, ReaderUnderstandsTodaysWriterAndFindsNewMembersEmpty) {
   ASSERT_EQ(received.lights._length, 1u);
   EXPECT_EQ(received.lights._buffer[0].id, 12u);
   EXPECT_EQ(received.lights._buffer[0].angular_radius_rad, 0);
-  EXPECT_EQ(received.harmonics._length, 0u);
+  EXPECT_EQ(received.zones._length, 0u);
   dds_return_loan(reader, &sample, count);
 }
 

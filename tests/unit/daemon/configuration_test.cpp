@@ -48,6 +48,16 @@ TEST_F(ConfigurationFile, PrintShowsWhereAValueComesFrom) {
   EXPECT_THAT(text, HasSubstr("clusters = 72  # default"));
 }
 
+TEST_F(ConfigurationFile, TheFitHasALimitAndABound) {
+  const auto loaded = load("[fit]\nlights = 8\nmax_error = 0.03\n");
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_EQ(loaded->configuration.fit.lights, 8);
+  EXPECT_EQ(loaded->configuration.fit.max_error, 0.03);
+  EXPECT_THAT(print_configuration(*loaded), HasSubstr("max_error = 0.03"));
+  for (const char* text : {"[fit]\nlights = 17\n", "[fit]\nlights = -1\n", "[fit]\nmax_error = 2\n"})
+    EXPECT_FALSE(load(text)) << text;
+}
+
 TEST_F(ConfigurationFile, CommandLineWinsOverTheFile) {
   const auto loaded =
       load("[source]\naddress = \"aravis:10.0.0.1\"\n", {{"source.address", "simulated:day"}});
