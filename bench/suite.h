@@ -73,6 +73,7 @@ struct Suite {
 const std::vector<Suite>& suites();
 
 std::vector<Row> frame_suite(const Options& options);
+std::vector<Row> fit_suite(const Options& options);
 std::vector<Row> lens_suite(const Options& options);
 std::vector<Row> response_suite(const Options& options);
 

@@ -46,8 +46,8 @@ std::vector<Row> lights_rows(const Options& options) {
 
 const std::vector<Suite>& suites() {
   static const std::vector<Suite> all = {
-      {"frame", frame_suite},       {"lights", lights_rows, curve_figures}, {"lens", lens_suite},
-      {"response", response_suite}, {"coherence", coherence_suite},
+      {"frame", frame_suite}, {"lights", lights_rows, curve_figures}, {"fit", fit_suite},
+      {"lens", lens_suite},   {"response", response_suite},           {"coherence", coherence_suite},
   };
   return all;
 }
