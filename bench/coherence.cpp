@@ -186,7 +186,11 @@ struct Means {
 }  // namespace
 
 std::vector<Row> coherence_suite(const Options& options) {
-  const std::vector<Follower> followers = asked_followers(options);
+  std::vector<Follower> followers = asked_followers(options);
+  if (options.only_name.empty()) followers = at_frame_rate(std::move(followers), options);
+  const auto lights = static_cast<std::size_t>(options.lights);
+  for (Follower& follower : followers)
+    if (follower.name == name(Method::best) && lights >= 4) follower.prefixes = {lights / 4, lights / 2};
   std::vector<Row> rows;
   for (const Sequence& sequence : asked_sequences(options))
     for (const FollowedRow& followed : follow(sequence, followers, options.lights))
@@ -198,8 +202,8 @@ std::vector<Row> temporal_rows(const Options& options) {
   const std::vector<Follower> followers = at_frame_rate(asked_followers(options), options);
   std::vector<Means> means(followers.size());
   for (const Sequence& sequence : asked_sequences(options)) {
-    const std::vector<FollowedRow> rows = follow(sequence, followers, options.lights);
-    for (std::size_t i = 0; i < rows.size(); ++i) means[i].add(rows[i]);
+    const std::vector<FollowedRow> followed = follow(sequence, followers, options.lights);
+    for (std::size_t i = 0; i < followed.size(); ++i) means[i].add(followed[i]);
   }
   std::vector<Row> rows;
   for (std::size_t i = 0; i < followers.size(); ++i)

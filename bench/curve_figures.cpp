@@ -105,8 +105,8 @@ std::vector<Figure> curve_figures(const std::vector<Row>& rows) {
   std::vector<Row> bars;
   double maps = 0;
   for (const Row& row : rows) {
-    const bool curve = row.setting == "error" || row.setting == "temporal" || row.setting == "flicker" ||
-                       row.setting.starts_with("growth");
+    const bool curve = row.setting == "error" || row.setting == "prefix" || row.setting == "temporal" ||
+                       row.setting == "flicker" || row.setting.starts_with("growth");
     if (!curve) bars.push_back(row);
     if (row.setting == "error") maps = std::max(maps, value_of(row, "maps"));
   }
