@@ -60,6 +60,7 @@ FramePathOptions frame_path_options(const Configuration& configuration) {
   options.lights.stop_hz = given.stop_hz;
   options.lights.filter_order = given.order;
   options.lights.clusters = given.clusters;
+  options.flicker_hz = given.mains == "50" ? 100 : given.mains == "60" ? 120 : 0;
   return options;
 }
 

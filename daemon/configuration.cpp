@@ -136,6 +136,8 @@ const std::vector<Key>& keys() {
       integer("lights.order", "taps of the filter less one", &C::lights, &C::Lights::order, 2, 64),
       integer("lights.clusters", "most lights published, 0: all that were sampled", &C::lights,
               &C::Lights::clusters, 0, 100000),
+      text("lights.mains", "flicker of lamps on mains of so many Hz is taken out of the map, without delay",
+           &C::lights, &C::Lights::mains, {"off", "50", "60"}),
       integer("fit.lights", "ambient and so many lights fitted besides, for readers that afford few; 0: none",
               &C::fit, &C::Fit::lights, 0, kMostFittedLights),
       number("fit.max_error",

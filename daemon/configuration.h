@@ -53,6 +53,7 @@ struct Configuration {
     double stop_hz = 0;
     int order = 8;
     int clusters = 72;
+    std::string mains = "off";
     bool operator==(const Lights&) const = default;
   } lights;
   struct Fit {

@@ -73,6 +73,12 @@ Status FramePath::prepare(const FrameFormat& format, double rate_hz) {
   auto lights = LightPipeline::create(shape_.grid, shape_.channels, filter_for(rate_hz));
   if (!lights) return lights.error();
   lights_ = std::move(*lights);
+  flicker_.reset();
+  if (options_.flicker_hz > 0 && rate_hz > 0) {
+    auto flicker = FlickerFilter::create(shape_.radiance.size(), {options_.flicker_hz, rate_hz, 0});
+    if (!flicker) return flicker.error();
+    flicker_ = std::move(*flicker);
+  }
   rate_hz_ = rate_hz;
   malloc_trim(0);  // making tables takes several times the memory of keeping them: 40 MB at 1024²
   return {};
@@ -100,6 +106,9 @@ void FramePath::process(const FrameInfo& info, std::span<const std::byte> codes)
   radiometer_->develop(codes, info.exposure_us, out.map);
   const std::int64_t developed_ns = mono_now_ns();
 
+  if (flicker_)
+    flicker_->apply(static_cast<double>(info.capture_mono_ns) * 1e-9, info.exposure_us * 1e-6,
+                    out.map.radiance);
   forget_after_gap(info.capture_mono_ns);
   const std::span<const DirectionalLight> lights = lights_->process(out.map);
   out.lights.assign(lights.begin(), lights.end());

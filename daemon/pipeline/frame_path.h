@@ -16,6 +16,7 @@
 #include "lighting/map_harmonics.h"
 #include "lighting/radiometer.h"
 #include "lighting/result.h"
+#include "lighting/temporal/flicker_filter.h"
 
 namespace lightwell {
 
@@ -25,10 +26,12 @@ struct FramePathOptions {
   // rate_hz is the camera's and set by the frame path; pass_hz = stop_hz = 0 asks for the paper's 7/21 and
   // 9/21 of it.
   LightPipelineOptions lights{.pass_hz = 0, .stop_hz = 0};
+  // Of lamps: their swing is taken out of every bin of the map, where the camera's rate is known. 0: left in.
+  double flicker_hz = 0;
 };
 
-// A raw frame on its way to published lights, in four steps that read top to bottom in process():
-// codes → radiance map → lights → snapshot for everybody else. One thread.
+// A raw frame on its way to published lights, in steps that read top to bottom in process():
+// codes → radiance map → (without the mains' flicker) → lights → snapshot for everybody else. One thread.
 class FramePath {
  public:
   FramePath(Calibration calibration, const FramePathOptions& options, SnapshotChannel& snapshots);
@@ -64,6 +67,7 @@ class FramePath {
   SnapshotChannel& snapshots_;
 
   std::optional<Radiometer> radiometer_;
+  std::optional<FlickerFilter> flicker_;
   std::optional<LightPipeline> lights_;
   std::optional<MapHarmonics> harmonics_;
   FrameFormat format_;
