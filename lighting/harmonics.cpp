@@ -26,19 +26,32 @@ Table make_norms() {
 }
 const Table kNorms = make_norms();
 
-// Q_lm(y), the m-th derivative of the Legendre polynomial P_l: P_l^m = sin^m θ Q_lm without Condon–Shortley sign.
+// Q_lm = (2l − 1)/(l − m) y Q_{l−1,m} − (l + m − 1)/(l − m) Q_{l−2,m}
+struct Recurrence {
+  Table first{}, second{};
+  Recurrence() {
+    for (int l = 2; l <= kMostDegree; ++l)
+      for (int m = 0; m <= l - 2; ++m) {
+        const auto i = static_cast<std::size_t>(l), j = static_cast<std::size_t>(m);
+        first[i][j] = (2.0 * l - 1) / (l - m);
+        second[i][j] = (l + m - 1.0) / (l - m);
+      }
+  }
+};
+const Recurrence kRecurrence;
+
+// Q_lm(y), the m-th derivative of the Legendre polynomial P_l, to m = l + 1: P_l^m = sin^m θ Q_lm without
+// Condon–Shortley sign.
 void legendre_derivatives(double y, int degree, Table& q) {
-  for (auto& row : q) row.fill(0);
   double diagonal = 1;  // (2m − 1)!!
-  for (int m = 0; m <= degree; ++m) {
-    const auto j = static_cast<std::size_t>(m);
-    q[j][j] = diagonal;
-    if (m < degree) q[j + 1][j] = (2 * m + 1) * y * diagonal;
-    for (int l = m + 2; l <= degree; ++l) {
-      const auto i = static_cast<std::size_t>(l);
-      q[i][j] = ((2 * l - 1) * y * q[i - 1][j] - (l + m - 1) * q[i - 2][j]) / (l - m);
-    }
-    diagonal *= 2 * m + 1;
+  for (std::size_t m = 0; m <= static_cast<std::size_t>(degree); ++m) {
+    q[m][m] = diagonal;
+    q[m][m + 1] = 0;
+    const double odd = 2 * static_cast<double>(m) + 1;
+    if (m < static_cast<std::size_t>(degree)) q[m + 1][m] = odd * y * diagonal;
+    for (std::size_t l = m + 2; l <= static_cast<std::size_t>(degree); ++l)
+      q[l][m] = kRecurrence.first[l][m] * y * q[l - 1][m] - kRecurrence.second[l][m] * q[l - 2][m];
+    diagonal *= odd;
   }
 }
 
@@ -72,26 +85,32 @@ void harmonics(const Vec3d& direction, int degree, double* values) noexcept {
 }
 
 // Q_lm(y) Re (z + ix)^m is a polynomial: dQ_lm/dy = Q_l,m+1, and d(z + ix)^m = m (z + ix)^{m−1} (dz + i dx).
-void harmonic_slopes(const Vec3d& direction, const Vec3d& t, int degree, double* slopes) noexcept {
+void harmonic_slopes(const Vec3d& direction, const std::array<Vec3d, 2>& along, int degree,
+                     const std::array<double*, 2>& slopes) noexcept {
   verify_bug(degree >= 0 && degree <= kMostDegree, "degree of spherical harmonics out of range");
   Table q;
   legendre_derivatives(direction.y(), degree, q);
   const Powers power(direction.z(), direction.x(), degree);
-  for (int l = 0; l <= degree; ++l)
-    for (int m = 0; m <= l; ++m) {
-      const auto i = static_cast<std::size_t>(l);
-      const auto j = static_cast<std::size_t>(m);
-      const double norm = kNorms[i][j];
-      const double along_y = q[i][j + 1] * t.y();
-      if (m == 0) {
-        slopes[harmonic_index(l, 0)] = norm * along_y;
-        continue;
-      }
-      const double around_re = m * (power.re[j - 1] * t.z() - power.im[j - 1] * t.x());
-      const double around_im = m * (power.re[j - 1] * t.x() + power.im[j - 1] * t.z());
-      slopes[harmonic_index(l, m)] = norm * (along_y * power.re[j] + q[i][j] * around_re);
-      slopes[harmonic_index(l, -m)] = norm * (along_y * power.im[j] + q[i][j] * around_im);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Vec3d& t = along[k];
+    double* out = slopes[k];
+    std::array<double, kOrders> around_re, around_im;
+    for (std::size_t j = 1; j <= static_cast<std::size_t>(degree); ++j) {
+      const auto m = static_cast<double>(j);
+      around_re[j] = m * (power.re[j - 1] * t.z() - power.im[j - 1] * t.x());
+      around_im[j] = m * (power.re[j - 1] * t.x() + power.im[j - 1] * t.z());
     }
+    for (int l = 0; l <= degree; ++l) {
+      const auto i = static_cast<std::size_t>(l);
+      out[harmonic_index(l, 0)] = kNorms[i][0] * q[i][1] * t.y();
+      for (int m = 1; m <= l; ++m) {
+        const auto j = static_cast<std::size_t>(m);
+        const double along_y = q[i][j + 1] * t.y();
+        out[harmonic_index(l, m)] = kNorms[i][j] * (along_y * power.re[j] + q[i][j] * around_re[j]);
+        out[harmonic_index(l, -m)] = kNorms[i][j] * (along_y * power.im[j] + q[i][j] * around_im[j]);
+      }
+    }
+  }
 }
 
 double irradiance_factor(int l) noexcept {

@@ -20,8 +20,9 @@ constexpr int harmonic_index(int l, int m) {
 // Y_lm of a unit direction to a degree ≤ kMostDegree, [harmonic_count(degree)].
 inline constexpr int kMostDegree = 10;
 void harmonics(const Vec3d& direction, int degree, double* values) noexcept;
-// Their derivatives by a step from the unit direction along t, which stands across it.
-void harmonic_slopes(const Vec3d& direction, const Vec3d& t, int degree, double* slopes) noexcept;
+// Their derivatives by steps from the unit direction along two vectors that stand across it.
+void harmonic_slopes(const Vec3d& direction, const std::array<Vec3d, 2>& along, int degree,
+                     const std::array<double*, 2>& slopes) noexcept;
 
 // What of a band of radiance remains in irradiance: E_lm = A_l L_lm. 0 for odd l above 1.
 // source: Ramamoorthi, Hanrahan 2001, "An efficient representation for irradiance environment maps", eq. 8

@@ -18,11 +18,15 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPursue = 1e-3;    // the first descents of a search
 constexpr double kFinish = 1e-6;    // the last ones
+constexpr int kQuickLights = 4;     // more have so many optima that they need a thorough search
 constexpr int kWarmIterations = 6;  // the light of one frame is near that of the one before
 // A light found anew replaces an old one of the frame before only where that clearly pays: lights that jump show.
-constexpr double kWarmGain = 0.1;
-// A residual that grew so much since the frame before is another scene.
+constexpr double kWarmGain = 0.04;  // of the cost: 2 % of the residual
+// A residual that grew so much since the frame before, or a probe of which so much changed (relative RMS, whatever its
+// brightness), is another scene: the lights before may lead to a poor optimum of it.
 constexpr double kCut = 1.5;
+constexpr double kOtherProbe = 0.1;
+constexpr double kSameLight = 20 * kPi / 180;  // moved so far since the frame before, a light is another
 
 Vec3d mean_direction(const LightsTrial& trial, int a, int b) {
   const auto weighted = [&](int k) -> Vec3d {
@@ -80,7 +84,6 @@ struct FewLights::State {
 
   void remove(int light) noexcept {
     trial.remove(light);
-    for (int k = light; k < trial.count; ++k) ids[index(k)] = ids[index(k + 1)];
     trial.positive = {};
     search.solve_powers(trial);
   }
@@ -109,7 +112,6 @@ struct FewLights::State {
           closest < kTwinAngle ? std::max(kTwinResidual, (1 + kMergeCost) * now) : (1 + kMergeCost) * now;
       if (after > allowed || after > std::max(now, options.max_error.value_or(kInfinity))) return;
       trial = merged;
-      for (int k = b; k < trial.count; ++k) ids[index(k)] = ids[index(k + 1)];
       ++result.merged;
       result.merged_rad = std::max(result.merged_rad, closest);
     }
@@ -121,7 +123,6 @@ struct FewLights::State {
       if (residual_of(trial) > kExactResidual) return;
       const LightsTrial fewer = search.without(trial, k);
       if (residual_of(fewer) > kExactResidual) continue;
-      for (int j = k; j < fewer.count; ++j) ids[index(j)] = ids[index(j + 1)];
       trial = fewer;
       ++result.needless;
     }
@@ -129,7 +130,6 @@ struct FewLights::State {
 
   void fit_cold() noexcept {
     result.warm = false;
-    for (auto& id : ids) id = next_id++;
     trial.count = 0;
     trial.positive = {};
     search.solve_powers(trial);
@@ -137,7 +137,9 @@ struct FewLights::State {
       return;
     }
     if (!options.max_error) {
-      trial = cold.fit(options.lights, ColdFit::Effort::quick).trial;
+      trial = cold.fit(options.lights,
+                       options.lights <= kQuickLights ? ColdFit::Effort::quick : ColdFit::Effort::thorough)
+                  .trial;
       return;
     }
     fit_to_bound();
@@ -164,6 +166,7 @@ struct FewLights::State {
   bool fit_warm() noexcept {
     result.warm = true;
     const double before = result.residual;
+    if ((faces.observed().topRows<kProbeNormals>() - probe_before).norm() > kOtherProbe) return false;
     search.refine(trial, kWarmIterations);
     const double bound = options.max_error.value_or(0);
     const double now = residual_of(trial);
@@ -173,7 +176,7 @@ struct FewLights::State {
     if (trial.count < options.lights) return try_one_more();
     if (trial.count > 0) {
       const int light = static_cast<int>(frames % static_cast<std::uint64_t>(trial.count));
-      if (search.exchange_one(trial, light, kWarmGain)) ids[index(light)] = next_id++;
+      search.exchange_one(trial, light, kWarmGain);
     }
     return true;
   }
@@ -181,10 +184,7 @@ struct FewLights::State {
   bool try_one_more() noexcept {
     if (residual_of(trial) <= (trial.count == 0 ? kEvenResidual : kExactResidual)) return true;
     const LightsTrial more = search.with_one_more(trial);
-    if (more.cost < trial.cost * (1 - kWarmGain)) {
-      trial = more;
-      ids[index(trial.count - 1)] = next_id++;
-    }
+    if (more.cost < trial.cost * (1 - kWarmGain)) trial = more;
     return true;
   }
 
@@ -200,7 +200,6 @@ struct FewLights::State {
     const LightsTrial fewer = search.without(trial, light);
     if (residual_of(fewer) > kMargin * *options.max_error) return true;
     trial = fewer;
-    for (int k = light; k < trial.count; ++k) ids[index(k)] = ids[index(k + 1)];
     return true;
   }
 
@@ -208,7 +207,7 @@ struct FewLights::State {
   const FewLightsFit& fit(Coverage coverage, const Rgbd& total) noexcept {
     cold.observations_changed();
     const bool had_lights = any_before && !result.black;
-    const FewLightsFit before = result;
+    const FewLightsFit before = any_before ? result : FewLightsFit{};
     result = {};
     result.residual = before.residual;
     result.reached = before.reached;
@@ -227,15 +226,34 @@ struct FewLights::State {
       return result;
     }
     if (!had_lights || !fit_warm()) fit_cold();
+    probe_before = faces.observed().topRows<kProbeNormals>();
     drop_dark();
     merge_close();
     drop_beyond_exact();
-    report();
+    report(before);
     return result;
   }
 
+  // A light is the one of the frame before that is nearest to it, the brightest first to choose.
+  void recognise(const FewLightsFit& before) noexcept {
+    std::array<bool, kMostFittedLights> taken{};
+    for (int k = 0; k < result.count; ++k) {
+      FittedLight& light = result.lights[index(k)];
+      int same = -1;
+      double closest = kSameLight;
+      for (int j = 0; j < before.count; ++j) {
+        const double angle = angle_between(light.direction, before.lights[index(j)].direction);
+        if (taken[index(j)] || angle >= closest) continue;
+        closest = angle;
+        same = j;
+      }
+      if (same >= 0) taken[index(same)] = true;
+      light.id = same >= 0 ? before.lights[index(same)].id : next_id++;
+    }
+  }
+
   // The trial in lux, brightest light first.
-  void report() noexcept {
+  void report(const FewLightsFit& before) noexcept {
     const FitSigmas sigmas = confidence.sigmas(trial);
     const double scale = faces.scale();
     result.count = trial.count;
@@ -244,15 +262,14 @@ struct FewLights::State {
       FittedLight& light = result.lights[index(k)];
       light.direction = trial.direction.col(k);
       light.illuminance = trial.power.row(k + 1).transpose() * scale;
-      light.id = ids[index(k)];
       light.direction_sigma_rad = sigmas.direction_rad[index(k)];
       light.illuminance_sigma = sigmas.power.row(k).transpose() * scale;
     }
     std::sort(result.lights.begin(), result.lights.begin() + result.count,
               [](const FittedLight& a, const FittedLight& b) {
-                const double brighter = luminance(a.illuminance) - luminance(b.illuminance);
-                return brighter != 0 ? brighter > 0 : a.id < b.id;
+                return luminance(a.illuminance) > luminance(b.illuminance);
               });
+    recognise(before);
     search.residual(trial, left);
     result.residual = left.topRows<kProbeNormals>().norm();
     if (faces.with_shadow()) result.shadow_residual = left.bottomRows<kGroundPoints>().norm();
@@ -270,8 +287,8 @@ struct FewLights::State {
   FitConfidence confidence;
   Eigen::Matrix<double, Eigen::Dynamic, 3> left;
   ProbeIrradiance irradiance;
+  Eigen::Matrix<double, kProbeNormals, 3> probe_before;  // of norm 1
   LightsTrial trial;
-  std::array<std::uint32_t, kMostFittedLights> ids{};
   std::uint32_t next_id = 1;
   std::uint64_t frames = 0;
   bool any_before = false;

@@ -118,11 +118,10 @@ void BandObservations::light_column(const Vec3d& direction, double* values) cons
 
 void BandObservations::slope_columns(const Vec3d& direction, const Vec3d& t, const Vec3d& u, double* along_t,
                                      double* along_u) const noexcept {
-  All all;
-  harmonic_slopes(direction, t, kDegree, all.data());
-  keep(all, along_t);
-  harmonic_slopes(direction, u, kDegree, all.data());
-  keep(all, along_u);
+  All of_t, of_u;
+  harmonic_slopes(direction, {t, u}, kDegree, {of_t.data(), of_u.data()});
+  keep(of_t, along_t);
+  keep(of_u, along_u);
 }
 
 // Radiance 1 is √(4π) Y_00.

@@ -75,14 +75,17 @@ TEST(Harmonics, SumOfSquaresOfABandIsTheSameEverywhere) {
 
 TEST(Harmonics, SlopesAreTheDifferencesOfValues) {
   std::mt19937 random(3);
-  std::array<double, harmonic_count(kMostDegree)> slope, before, after;
+  std::array<double, harmonic_count(kMostDegree)> slope, other, before, after;
   for (int i = 0; i < 20; ++i) {
     const Vec3d d = random_unit(random);
     const Vec3d t = d.cross(random_unit(random)).normalized();
-    harmonic_slopes(d, t, kMostDegree, slope.data());
+    harmonic_slopes(d, {t, d.cross(t)}, kMostDegree, {slope.data(), other.data()});
     constexpr double kStep = 1e-5;
     harmonics((d - kStep * t).normalized(), kMostDegree, before.data());
     harmonics((d + kStep * t).normalized(), kMostDegree, after.data());
+    std::array<double, harmonic_count(kMostDegree)> of_other, unused;
+    harmonic_slopes(d, {d.cross(t), t}, kMostDegree, {of_other.data(), unused.data()});
+    EXPECT_EQ(of_other, other);
     for (std::size_t k = 0; k < slope.size(); ++k)
       // Third derivatives of degree 10 are below 1e4, times a sixth of the step squared; and rounding over the step.
       EXPECT_NEAR(slope[k], (after[k] - before[k]) / (2 * kStep), 1e-6);
