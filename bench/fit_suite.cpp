@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "bench/ceres_lights.h"
+#include "bench/chart.h"
 #include "bench/madsen_newton.h"
 #include "bench/painting.h"
 #include "bench/suite.h"
@@ -22,6 +23,7 @@ namespace {
 const PolarGrid kGrid{180, 360, kPi};
 constexpr int kMostFewest = 8;  // up to so many lights the best of random starts is known
 constexpr int kStarts = 200;
+const std::string kResidualAgainstLights = "residual against lights, ";
 
 // A whole sphere of light, its probe, and the best residual that 200 random starts reach with so many lights.
 struct Scene {
@@ -194,8 +196,8 @@ std::vector<Row> residual_by_number(const std::vector<Scene>& scenes) {
         const auto [residual, negative] = method.fit(scene);
         residuals.add(residual, scene.best.at(lights), negative);
       }
-      rows.push_back(without_time("residual against lights, " + std::to_string(lights), method.name,
-                                  residuals.values()));
+      rows.push_back(
+          without_time(kResidualAgainstLights + std::to_string(lights), method.name, residuals.values()));
     }
   return rows;
 }
@@ -240,6 +242,29 @@ std::vector<Row> fit_suite(const Options& options) {
   append(residual_by_number(scenes));
   append(fewest(scenes));
   return rows;
+}
+
+// Residual against the number of lights, every method a line.
+std::vector<Figure> fit_figures(const std::vector<Row>& rows) {
+  Chart chart{"Residual against lights",
+              "lights",
+              "relative RMSE of the probe, geometric mean over the maps",
+              false,
+              true,
+              {}};
+  const std::string& setting = kResidualAgainstLights;
+  for (const Row& row : rows) {
+    if (!row.setting.starts_with(setting)) continue;
+    const double lights = std::stod(row.setting.substr(setting.size()));
+    auto line = std::find_if(chart.lines.begin(), chart.lines.end(),
+                             [&](const Line& l) { return l.name == row.name; });
+    if (line == chart.lines.end()) line = chart.lines.insert(line, Line{row.name, {}});
+    for (const auto& [key, value] : row.values)
+      if (key == "residual") line->points.emplace_back(lights, value);
+  }
+  for (int lights = 1; lights <= kMostFewest; ++lights) chart.x_ticks.push_back(lights);
+  return {{"fit", to_svg({chart},
+                         "lightwell bench --suite fit: ambient and M directional lights on a white sphere")}};
 }
 
 }  // namespace lightwell::bench

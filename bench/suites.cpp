@@ -48,7 +48,7 @@ const std::vector<Suite>& suites() {
   static const std::vector<Suite> all = {
       {"frame", frame_suite},
       {"lights", lights_rows, curve_figures},
-      {"fit", fit_suite},
+      {"fit", fit_suite, fit_figures},
       {"lens", lens_suite},
       {"response", response_suite},
       // Hundreds of rows: the lights suite has their plot, as means.

@@ -8,7 +8,8 @@
 
 #include "interface/atomic_file.h"
 #include "interface/light_set_io.h"
-#include "lighting/fit/lambertian_probe.h"
+#include "lighting/fit/few_lights.h"
+#include "lighting/fit/light_search.h"
 #include "lighting/lat_long_image.h"
 #include "tests/integration/commands/command_fixture.h"
 
@@ -177,6 +178,36 @@ TEST_F(FitCommand, WrongUseIsNamedAndNothingIsWritten) {
   EXPECT_EQ(own.exit_code, 2);
   const auto lost = lightwell({"fit", sky, "--lights", "2", "--out", path("nowhere/f.json")});
   EXPECT_EQ(lost.exit_code, 1);
+}
+
+// Photographs of real places: sun, windows, night, studio, overcast.
+TEST(FitOfRealMaps, FourLightsAreWithinTwoPercentOfTheBestOfTwoHundredRandomStartsAndNeverNegative) {
+  const std::filesystem::path folder = std::filesystem::path(LIGHTWELL_TEST_DATA) / "env";
+  for (const char* name : {"kloppenheim_05_1k.hdr", "lebombo_1k.hdr", "moonless_golf_1k.hdr",
+                           "studio_small_05_1k.hdr", "vestibule_1k.hdr", "venice_sunset_1k.hdr"}) {
+    if (!std::filesystem::exists(folder / name)) GTEST_SKIP() << "no real map " << folder / name;
+    const auto environment = read_environment(folder / name);
+    ASSERT_TRUE(environment);
+    const PolarMap map = resample_polar(polar_map_from_lat_long(environment->image, false), {180, 360, kPi});
+    LambertianProbe probe(map.grid);
+    ProbeIrradiance irradiance;
+    probe.irradiance(map, irradiance);
+    FaceObservations faces(false);
+    faces.set_probe(irradiance);
+    LightSearch search(faces, 1e-6);
+    double best = 1;
+    std::uint64_t state = 4;
+    for (int start = 0; start < 200; ++start) {
+      LightsTrial trial = random_directions(4, state);
+      search.refine(trial, 60);
+      best = std::min(best, std::sqrt(trial.cost));
+    }
+    const FewLightsFit fit = fit_few_lights(map, {.lights = 4}).value();
+    EXPECT_LT(fit.residual, 1.02 * best) << name;
+    EXPECT_GE(fit.ambient.minCoeff(), 0);
+    for (int k = 0; k < fit.count; ++k)
+      EXPECT_GE(fit.lights[static_cast<std::size_t>(k)].illuminance.minCoeff(), 0);
+  }
 }
 
 }  // namespace
