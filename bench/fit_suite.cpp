@@ -244,27 +244,32 @@ std::vector<Row> fit_suite(const Options& options) {
   return rows;
 }
 
-// Residual against the number of lights, every method a line.
-std::vector<Figure> fit_figures(const std::vector<Row>& rows) {
-  Chart chart{"Residual against lights",
-              "lights",
-              "relative RMSE of the probe, geometric mean over the maps",
-              false,
-              true,
-              {}};
-  const std::string& setting = kResidualAgainstLights;
+namespace {
+
+// A value of the rows against the number of lights, every method a line.
+Chart against_lights(const std::vector<Row>& rows, const std::string& value, const std::string& title,
+                     const std::string& label, bool log_y) {
+  Chart chart{title, "lights", label, false, log_y, {}};
   for (const Row& row : rows) {
-    if (!row.setting.starts_with(setting)) continue;
-    const double lights = std::stod(row.setting.substr(setting.size()));
+    if (!row.setting.starts_with(kResidualAgainstLights)) continue;
+    const double lights = std::stod(row.setting.substr(kResidualAgainstLights.size()));
     auto line = std::find_if(chart.lines.begin(), chart.lines.end(),
                              [&](const Line& l) { return l.name == row.name; });
     if (line == chart.lines.end()) line = chart.lines.insert(line, Line{row.name, {}});
-    for (const auto& [key, value] : row.values)
-      if (key == "residual") line->points.emplace_back(lights, value);
+    for (const auto& [key, number] : row.values)
+      if (key == value) line->points.emplace_back(lights, number);
   }
   for (int lights = 1; lights <= kMostFewest; ++lights) chart.x_ticks.push_back(lights);
-  return {{"fit", to_svg({chart},
-                         "lightwell bench --suite fit: ambient and M directional lights on a white sphere")}};
+  return chart;
+}
+
+}  // namespace
+
+std::vector<Figure> fit_figures(const std::vector<Row>& rows) {
+  return {{"fit", to_svg({against_lights(rows, "residual", "Residual", "relative RMSE of the probe", true),
+                          against_lights(rows, "negative_radiance", "Fits with negative radiance",
+                                         "part of all maps", false)},
+                         "Ambient and M directional lights on a white sphere; lightwell bench --suite fit")}};
 }
 
 }  // namespace lightwell::bench
