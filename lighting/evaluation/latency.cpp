@@ -62,12 +62,10 @@ double lag_frames(std::span<const Vec3d> follower, std::span<const Vec3d> refere
   const Match& least = matches[best];
   // Standing still: changes are rounding of the sums.
   if (!(least.variance > 1e-16 * largest) || !(least.difference <= 0.5 * least.variance)) return kNone;
-  double fraction = 0;
-  if (best > 0 && best + 1 < matches.size()) {
-    const double before = matches[best - 1].difference - least.difference;
-    const double after = matches[best + 1].difference - least.difference;
-    if (before + after > 0) fraction = (before - after) / (2 * (before + after));
-  }
+  if (best == 0 || best + 1 == matches.size()) return kNone;  // still falling: the valley is elsewhere
+  const double before = matches[best - 1].difference - least.difference;
+  const double after = matches[best + 1].difference - least.difference;
+  const double fraction = before + after > 0 ? (before - after) / (2 * (before + after)) : 0;
   return kLeast + static_cast<double>(best) + fraction;
 }
 

@@ -49,6 +49,7 @@ TEST(Lag, NoneIsToldOfAStillSeriesAFewFramesOrNoise) {
   const auto still = series(80, [](double) { return 5.0; });
   EXPECT_TRUE(std::isnan(lag_frames(series(80, ramp), still)));
   EXPECT_TRUE(std::isnan(lag_frames(series(12, ramp), series(12, ramp))));
+  EXPECT_TRUE(std::isnan(lag_frames(series(80, [](double t) { return ramp(t - 14); }), series(80, ramp))));
   std::mt19937 random(2);
   const auto noise = [&](double) { return static_cast<double>(random()) * 0x1p-32; };
   const auto a = series(80, noise);
