@@ -16,8 +16,7 @@ namespace lightwell {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kPursue = 1e-3;    // the first descents of a search
-constexpr double kFinish = 1e-6;    // the last ones
+constexpr double kFinish = 1e-6;    // of the cost: what an iteration must win to go on
 constexpr int kQuickLights = 4;     // more have so many optima that they need a thorough search
 constexpr int kWarmIterations = 6;  // the light of one frame is near that of the one before
 // A light found anew replaces an old one of the frame before only where that clearly pays: lights that jump show.
