@@ -3,208 +3,288 @@
 #include "lighting/decomposition/atoms.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
-#include <vector>
+
+#include "lighting/decomposition/error_kernel.h"
 
 namespace lightwell {
 namespace {
 
 constexpr double kDegree = kPi / 180;
+constexpr int kColumns = 60;  // of 6°
+constexpr int kMostAtoms = 6144;
+constexpr int kPartsOfACell = 18;  // 3 × 6
 
-struct Block {
-  int ring0, ring1;
-  int sector0, sector1;
-};
+int edge(int begin, int end, int part, int parts) {
+  return begin + static_cast<int>(std::int64_t{end - begin} * part / parts);
+}
 
-// A bin's luminance in lux, 0 for what is not light.
-class BinLight {
- public:
-  explicit BinLight(const PolarMap& map) : map_(map) {}
+// Blocks keep about their width on the sphere: 60° and 24° of azimuth in the two rows at a pole.
+int columns_together(double theta_rad) {
+  const double from_pole = std::min(theta_rad, kPi - theta_rad);
+  return from_pole < 6 * kDegree ? 5 : from_pole < 12 * kDegree ? 2 : 1;
+}
 
-  [[nodiscard]] Rgbd illuminance(std::size_t bin) const {
-    Rgbd value = map_.rgb(bin).cast<double>() * static_cast<double>(map_.solid_angle_sr[bin]);
-    for (int c = 0; c < 3; ++c)
-      if (!(value[c] > 0) || !std::isfinite(value[c])) value[c] = 0;
-    return value;
+int to_lanes(int n) {
+  return (n + placement_kernel::kLanes - 1) / placement_kernel::kLanes * placement_kernel::kLanes;
+}
+
+}  // namespace
+
+Atoms::Atoms(int capacity) {
+  const auto size = static_cast<std::size_t>(to_lanes(capacity));
+  for (auto* plane : {&x, &y, &z, &ground, &weight[0], &weight[1], &weight[2], &luminance, &solid_angle_sr})
+    plane->assign(size, 0.0f);
+}
+
+int Atoms::padded() const {
+  return to_lanes(count);
+}
+
+placement_kernel::Points Atoms::points() const {
+  return {x.data(), y.data(), z.data(), ground.data(), padded()};
+}
+
+std::array<const float*, 3> Atoms::weights() const {
+  return {weight[0].data(), weight[1].data(), weight[2].data()};
+}
+
+Vec3d Atoms::direction(int k) const {
+  const auto i = static_cast<std::size_t>(k);
+  return Vec3f(x[i], y[i], z[i]).cast<double>();
+}
+
+void Atoms::add(const Vec3d& direction, const Rgbd& share, double omega) noexcept {
+  const auto i = static_cast<std::size_t>(count++);
+  x[i] = static_cast<float>(direction.x());
+  y[i] = static_cast<float>(direction.y());
+  z[i] = static_cast<float>(direction.z());
+  ground[i] = static_cast<float>(ground_share(direction.y()));
+  for (std::size_t c = 0; c < 3; ++c) weight[c][i] = static_cast<float>(share[static_cast<Eigen::Index>(c)]);
+  luminance[i] = static_cast<float>(lightwell::luminance(share));
+  solid_angle_sr[i] = static_cast<float>(omega);
+}
+
+void Atoms::finish() noexcept {
+  for (auto i = static_cast<std::size_t>(count); i < static_cast<std::size_t>(padded()); ++i)
+    x[i] = y[i] = z[i] = ground[i] = weight[0][i] = weight[1][i] = weight[2][i] = luminance[i] =
+        solid_angle_sr[i] = 0;
+}
+
+AtomMaker::AtomMaker(const PolarGrid& grid, int lights)
+    : grid_(grid),
+      coarse_share_(1.0 / std::max(1500, 10 * lights)),
+      fine_share_(1.0 / std::max(800, 5 * lights)) {
+  const int rows = std::max(1, static_cast<int>(std::lround(grid.theta_max_rad / (6 * kDegree))));
+  for (int row = 0; row <= 2 * rows; ++row) rows_.push_back(edge(0, grid.rings, row, 2 * rows));
+  for (int column = 0; column <= kColumns; ++column)
+    columns_.push_back(edge(0, grid.sectors, column, kColumns));
+  for (int sector = 0; sector < grid.sectors; ++sector) {
+    const double lambda = 2 * kPi * (sector + 0.5) / grid.sectors;
+    sine_.push_back(static_cast<float>(std::sin(lambda)));
+    cosine_.push_back(static_cast<float>(std::cos(lambda)));
   }
+  for (auto& sum : sums_) sum.resize(sine_.size());
+  cells_.resize(static_cast<std::size_t>(2 * rows * kColumns));
+  // At the most every cell divided once, and the rest of the room for what is divided again.
+  capacity_ = static_cast<int>(std::min<std::size_t>(kMostAtoms, std::max<std::size_t>(grid.size(), 1))) +
+              2 * rows * kColumns + kPartsOfACell;
+}
 
- private:
-  const PolarMap& map_;
-};
-
-class AtomBuilder {
- public:
-  AtomBuilder(const PolarMap& map, const AtomOptions& options) : map_(map), options_(options), light_(map) {
-    luminance_.resize(map.grid.size());
-    for (std::size_t bin = 0; bin < luminance_.size(); ++bin) {
-      const Rgbd value = light_.illuminance(bin);
-      luminance_[bin] = luminance(value);
-      total_ += value;
+void AtomMaker::sum_cells(const PolarMap& map) noexcept {
+  const auto& kernel = placement_kernel::kernels();
+  const auto sectors = static_cast<std::size_t>(grid_.sectors);
+  const int last = map.channels == 1 ? 0 : 2;
+  for (std::size_t row = 0; row + 1 < rows_.size(); ++row) {
+    for (auto& sum : sums_) std::fill(sum.begin(), sum.end(), 0.0f);
+    for (int ring = rows_[row]; ring < rows_[row + 1]; ++ring) {
+      const std::size_t at = static_cast<std::size_t>(ring) * sectors;
+      const double theta = grid_.theta_max_rad * (ring + 0.5) / grid_.rings;
+      kernel.add_ring({map.plane(0).data() + at, map.plane(last / 2).data() + at, map.plane(last).data() + at,
+                       map.solid_angle_sr.data() + at},
+                      grid_.sectors, static_cast<float>(std::sin(theta)), static_cast<float>(std::cos(theta)),
+                      {sums_[0].data(), sums_[1].data(), sums_[2].data(), sums_[3].data(), sums_[4].data()});
     }
-    for (int sector = 0; sector < map.grid.sectors; ++sector) {
-      const double lambda = 2 * kPi * (sector + 0.5) / map.grid.sectors;
-      azimuth_.push_back({std::sin(lambda), std::cos(lambda)});
-    }
-  }
-
-  Atoms build() {
-    Atoms atoms;
-    atoms.total = total_;
-    atoms.scale = luminance(total_);
-    if (atoms.scale > 0) add_all();
-    const auto count = static_cast<Eigen::Index>(found_.size());
-    atoms.direction.resize(3, count);
-    atoms.illuminance.resize(count, 3);
-    atoms.luminance.resize(count);
-    atoms.solid_angle_sr.resize(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const Found& atom = found_[static_cast<std::size_t>(i)];
-      atoms.direction.col(i) = atom.direction;
-      atoms.illuminance.row(i) = (atom.illuminance / atoms.scale).matrix().transpose();
-      atoms.luminance[i] = luminance(Rgbd(atom.illuminance / atoms.scale));
-      atoms.solid_angle_sr[i] = atom.solid_angle_sr;
-    }
-    return atoms;
-  }
-
- private:
-  struct Found {
-    Vec3d direction;
-    Rgbd illuminance;
-    double solid_angle_sr;
-  };
-
-  void add_all() {
-    const PolarGrid& grid = map_.grid;
-    const int rows =
-        std::clamp(static_cast<int>(std::lround(grid.theta_max_rad / (6 * kDegree))), 1, grid.rings);
-    for (int row = 0; row < rows; ++row) {
-      const int ring0 = edge(0, grid.rings, row, rows);
-      const int ring1 = edge(0, grid.rings, row + 1, rows);
-      // Blocks keep about their width on the sphere: 60° and 24° of azimuth in the two rows at a pole.
-      const double middle = grid.theta_max_rad * (ring0 + ring1) / (2.0 * grid.rings);
-      const double from_pole = std::min(middle, kPi - middle);
-      const int columns = std::min(grid.sectors, from_pole < 6 * kDegree    ? 6
-                                                 : from_pole < 12 * kDegree ? 15
-                                                                            : 30);
-      for (int column = 0; column < columns; ++column)
-        add({ring0, ring1, edge(0, grid.sectors, column, columns),
-             edge(0, grid.sectors, column + 1, columns)},
-            0);
-    }
-  }
-
-  // level 0: 6° × 12°, 1: 3° × 6°, 2: 1° × 1°
-  void add(const Block& block, int level) {
-    const double share = sum(block) / luminance(total_);
-    if (!(share > 0)) return;
-    if (level == 2 || share <= (level == 0 ? options_.coarse_share : options_.fine_share)) {
-      emit(block);
-      return;
-    }
-    const int rows = std::min(level == 0 ? 2 : 3, block.ring1 - block.ring0);
-    const int columns = std::min(level == 0 ? 2 : 6, block.sector1 - block.sector0);
-    for (int row = 0; row < rows; ++row)
-      for (int column = 0; column < columns; ++column)
-        add({edge(block.ring0, block.ring1, row, rows), edge(block.ring0, block.ring1, row + 1, rows),
-             edge(block.sector0, block.sector1, column, columns),
-             edge(block.sector0, block.sector1, column + 1, columns)},
-            level + 1);
-  }
-
-  void emit(const Block& block) {
-    Vec3d moment = Vec3d::Zero();
-    Found atom{Vec3d::UnitY(), Rgbd::Zero(), 0};
-    for (int ring = block.ring0; ring < block.ring1; ++ring) {
-      const double theta = map_.grid.theta_max_rad * (ring + 0.5) / map_.grid.rings;
-      double sine = 0;
-      double cosine = 0;
-      double all = 0;
-      for (int sector = block.sector0; sector < block.sector1; ++sector) {
-        const std::size_t bin = index(ring, sector);
-        const double weight = luminance_[bin];
-        sine += weight * azimuth_[static_cast<std::size_t>(sector)][0];
-        cosine += weight * azimuth_[static_cast<std::size_t>(sector)][1];
-        all += weight;
-        atom.illuminance += light_.illuminance(bin);
-        atom.solid_angle_sr += static_cast<double>(map_.solid_angle_sr[bin]);
+    for (int column = 0; column < kColumns; ++column) {
+      float r = 0, g = 0, b = 0, x = 0, y = 0, z = 0;
+      for (int sector = columns_[static_cast<std::size_t>(column)];
+           sector < columns_[static_cast<std::size_t>(column) + 1]; ++sector) {
+        const auto s = static_cast<std::size_t>(sector);
+        r += sums_[0][s];
+        g += sums_[1][s];
+        b += sums_[2][s];
+        x += sums_[3][s] * sine_[s];
+        y += sums_[4][s];
+        z += sums_[3][s] * cosine_[s];
       }
-      moment += Vec3d(std::sin(theta) * sine, std::cos(theta) * all, std::sin(theta) * cosine);
+      cells_[row * kColumns + static_cast<std::size_t>(column)] = {
+          static_cast<double>(r), static_cast<double>(g), static_cast<double>(b),
+          static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
     }
-    const double length = moment.norm();
-    // Only a map of a bin or two has blocks so large that their light cancels; its middle stands for it then.
-    atom.direction =
-        length > 1e-9 * luminance(atom.illuminance)
-            ? Vec3d(moment / length)
-            : map_.grid.bin_direction((block.ring0 + block.ring1) / 2, (block.sector0 + block.sector1) / 2);
-    found_.push_back(atom);
   }
+}
 
-  [[nodiscard]] double sum(const Block& block) const {
-    double total = 0;
-    for (int ring = block.ring0; ring < block.ring1; ++ring)
-      for (int sector = block.sector0; sector < block.sector1; ++sector)
-        total += luminance_[index(ring, sector)];
-    return total;
+AtomMaker::Cell AtomMaker::sum_bins(const PolarMap& map, const Block& block) const noexcept {
+  Cell sum{};
+  for (int ring = block.ring0; ring < block.ring1; ++ring) {
+    const double theta = grid_.theta_max_rad * (ring + 0.5) / grid_.rings;
+    const double sin_theta = std::sin(theta), cos_theta = std::cos(theta);
+    for (int sector = block.sector0; sector < block.sector1; ++sector) {
+      const auto s = static_cast<std::size_t>(sector);
+      const std::size_t bin = static_cast<std::size_t>(ring) * static_cast<std::size_t>(grid_.sectors) + s;
+      Rgbd value = map.rgb(bin).cast<double>() * static_cast<double>(map.solid_angle_sr[bin]);
+      for (int c = 0; c < 3; ++c)
+        if (!(value[c] > 0) || !std::isfinite(value[c])) value[c] = 0;
+      const double y = luminance(value);
+      sum.r += value[0];
+      sum.g += value[1];
+      sum.b += value[2];
+      sum.x += y * sin_theta * static_cast<double>(sine_[s]);
+      sum.y += y * cos_theta;
+      sum.z += y * sin_theta * static_cast<double>(cosine_[s]);
+    }
   }
-  [[nodiscard]] std::size_t index(int ring, int sector) const {
-    return static_cast<std::size_t>(ring) * static_cast<std::size_t>(map_.grid.sectors) +
-           static_cast<std::size_t>(sector);
-  }
-  static int edge(int begin, int end, int part, int parts) {
-    return begin + static_cast<int>(std::int64_t{end - begin} * part / parts);
-  }
+  return sum;
+}
 
-  const PolarMap& map_;
-  AtomOptions options_;
-  BinLight light_;
-  std::vector<double> luminance_;
-  std::vector<std::array<double, 2>> azimuth_;  // sine, cosine
-  Rgbd total_ = Rgbd::Zero();
-  std::vector<Found> found_;
-};
+double AtomMaker::solid_angle(const Block& block) const noexcept {
+  double sum = 0;
+  for (int ring = block.ring0; ring < block.ring1; ++ring) sum += grid_.bin_solid_angle_sr(ring);
+  return sum * (block.sector1 - block.sector0);
+}
+
+void AtomMaker::add_block(const Cell& cell, const Block& block, Atoms& atoms) const noexcept {
+  const Rgbd value(cell.r, cell.g, cell.b);
+  const double y = luminance(value);
+  if (!(y > 0) || atoms.count >= capacity_) return;
+  const Vec3d moment(cell.x, cell.y, cell.z);
+  const double length = moment.norm();
+  // Only a map of a bin or two has blocks so large that their light cancels; its middle stands for it then.
+  const Vec3d direction = length > 1e-6 * y ? Vec3d(moment / length)
+                                            : grid_.bin_direction((block.ring0 + block.ring1) / 2,
+                                                                  (block.sector0 + block.sector1) / 2);
+  atoms.add(direction, value / atoms.scale, solid_angle(block));
+}
+
+// One cell, its bins 1° × 1° or so at a time.
+void AtomMaker::add_parts(const PolarMap& map, const Block& block, Atoms& atoms) const noexcept {
+  const int rings = std::min(3, block.ring1 - block.ring0);
+  const int columns = std::min(6, block.sector1 - block.sector0);
+  for (int ring = 0; ring < rings; ++ring)
+    for (int column = 0; column < columns; ++column) {
+      const Block part{edge(block.ring0, block.ring1, ring, rings),
+                       edge(block.ring0, block.ring1, ring + 1, rings),
+                       edge(block.sector0, block.sector1, column, columns),
+                       edge(block.sector0, block.sector1, column + 1, columns)};
+      add_block(sum_bins(map, part), part, atoms);
+    }
+}
+
+void AtomMaker::make(const PolarMap& map, Atoms& atoms) noexcept {
+  atoms.count = 0;
+  sum_cells(map);
+  atoms.total = Rgbd::Zero();
+  for (const Cell& cell : cells_) atoms.total += Rgbd(cell.r, cell.g, cell.b);
+  atoms.scale = luminance(atoms.total);
+  if (!(atoms.scale > 0)) {
+    atoms.scale = 0;
+    return;
+  }
+  const auto add = [](Cell& to, const Cell& c) {
+    to.r += c.r, to.g += c.g, to.b += c.b;
+    to.x += c.x, to.y += c.y, to.z += c.z;
+  };
+  const double coarse = coarse_share_ * atoms.scale, fine = fine_share_ * atoms.scale;
+  const int rows = static_cast<int>(rows_.size()) - 1;
+  for (int row = 0; row < rows; row += 2) {
+    const double middle = grid_.theta_max_rad * (row + 1) / rows;
+    const int together = columns_together(middle);
+    for (int column = 0; column < kColumns; column += 2 * together) {
+      Cell quarter[2][2] = {};
+      for (int i = 0; i < 2; ++i)
+        for (int k = 0; k < 2 * together; ++k)
+          if (column + k < kColumns)
+            add(quarter[i][k / together],
+                cells_[static_cast<std::size_t>((row + i) * kColumns + column + k)]);
+      Cell whole{};
+      for (auto& line : quarter)
+        for (const Cell& cell : line) add(whole, cell);
+      const auto at = [&](int i, int k) {
+        const auto c = [&](int n) { return columns_[static_cast<std::size_t>(std::min(n, kColumns))]; };
+        return Block{rows_[static_cast<std::size_t>(row + i)], rows_[static_cast<std::size_t>(row + i + 1)],
+                     c(column + k * together), c(column + (k + 1) * together)};
+      };
+      const Block all{at(0, 0).ring0, at(1, 0).ring1, at(0, 0).sector0, at(0, 1).sector1};
+      if (luminance(Rgbd(whole.r, whole.g, whole.b)) <= coarse) {
+        add_block(whole, all, atoms);
+        continue;
+      }
+      for (int i = 0; i < 2; ++i)
+        for (int k = 0; k < 2; ++k) {
+          const Cell& cell = quarter[i][k];
+          const int room = capacity_ - atoms.count - (rows - row) * kColumns;
+          if (luminance(Rgbd(cell.r, cell.g, cell.b)) > fine && room >= kPartsOfACell)
+            add_parts(map, at(i, k), atoms);
+          else
+            add_block(cell, at(i, k), atoms);
+        }
+    }
+  }
+  atoms.finish();
+}
+
+namespace {
 
 // A range of the index array, with what a division is decided by.
 struct Group {
-  Eigen::Index begin, end;
+  int begin, end;
   double luminance;
 };
 
-// Puts the group's atoms in order along its widest axis; the first half in luminance ends before the returned
-// place.
-Eigen::Index halve(const Atoms& atoms, std::vector<Eigen::Index>& order, const Group& group) {
+// Puts the group's atoms in order along its widest axis; the first half in luminance ends before the returned place.
+int halve(const Atoms& atoms, std::vector<int>& order, const Group& group) {
   const auto begin = order.begin() + group.begin;
   const auto end = order.begin() + group.end;
   Vec3d mean = Vec3d::Zero();
   Vec3d square = Vec3d::Zero();
   for (auto i = begin; i != end; ++i) {
-    const Vec3d d = atoms.direction.col(*i);
-    mean += atoms.luminance[*i] * d;
-    square += atoms.luminance[*i] * d.cwiseProduct(d);
+    const Vec3d d = atoms.direction(*i);
+    const auto weight = static_cast<double>(atoms.luminance[static_cast<std::size_t>(*i)]);
+    mean += weight * d;
+    square += weight * d.cwiseProduct(d);
   }
   mean /= group.luminance;
   Eigen::Index axis = 0;
   (square / group.luminance - mean.cwiseProduct(mean)).maxCoeff(&axis);
-  std::sort(begin, end, [&](Eigen::Index a, Eigen::Index b) {
-    const double x = atoms.direction(axis, a);
-    const double y = atoms.direction(axis, b);
-    return x < y || (x == y && a < b);
+  const std::vector<float>& along = axis == 0 ? atoms.x : axis == 1 ? atoms.y : atoms.z;
+  std::sort(begin, end, [&](int a, int b) {
+    const float p = along[static_cast<std::size_t>(a)];
+    const float q = along[static_cast<std::size_t>(b)];
+    return p < q || (p == q && a < b);
   });
   double below = 0;
-  Eigen::Index at = group.begin;
-  while (at < group.end - 1 &&
-         below + atoms.luminance[order[static_cast<std::size_t>(at)]] <= group.luminance / 2)
-    below += atoms.luminance[order[static_cast<std::size_t>(at++)]];
+  int at = group.begin;
+  const auto weight_at = [&](int i) {
+    return static_cast<double>(atoms.luminance[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])]);
+  };
+  while (at < group.end - 1 && below + weight_at(at) <= group.luminance / 2) below += weight_at(at++);
   return std::max(at, group.begin + 1);
 }
 
-std::vector<Group> divide(const Atoms& atoms, std::vector<Eigen::Index>& order, Eigen::Index count) {
+std::vector<Group> divide(const Atoms& atoms, std::vector<int>& order, int count) {
   const auto darker = [](const Group& a, const Group& b) { return a.luminance < b.luminance; };
-  std::vector<Group> heap = {{0, atoms.size(), atoms.luminance.sum()}};
+  const auto sum = [&](int begin, int end) {
+    double total = 0;
+    for (int i = begin; i < end; ++i)
+      total +=
+          static_cast<double>(atoms.luminance[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])]);
+    return total;
+  };
+  std::vector<Group> heap = {{0, atoms.count, sum(0, atoms.count)}};
   std::vector<Group> groups;  // of one atom each: cannot be divided
-  while (!heap.empty() && static_cast<Eigen::Index>(heap.size() + groups.size()) < count) {
+  while (!heap.empty() && static_cast<int>(heap.size() + groups.size()) < count) {
     std::pop_heap(heap.begin(), heap.end(), darker);
     const Group group = heap.back();
     heap.pop_back();
@@ -212,11 +292,9 @@ std::vector<Group> divide(const Atoms& atoms, std::vector<Eigen::Index>& order, 
       groups.push_back(group);
       continue;
     }
-    const Eigen::Index middle = halve(atoms, order, group);
-    for (Group half : {Group{group.begin, middle, 0}, Group{middle, group.end, 0}}) {
-      for (Eigen::Index i = half.begin; i < half.end; ++i)
-        half.luminance += atoms.luminance[order[static_cast<std::size_t>(i)]];
-      heap.push_back(half);
+    const int middle = halve(atoms, order, group);
+    for (const auto& [begin, end] : {std::pair{group.begin, middle}, std::pair{middle, group.end}}) {
+      heap.push_back({begin, end, sum(begin, end)});
       std::push_heap(heap.begin(), heap.end(), darker);
     }
   }
@@ -226,38 +304,32 @@ std::vector<Group> divide(const Atoms& atoms, std::vector<Eigen::Index>& order, 
 
 }  // namespace
 
-Atoms make_atoms(const PolarMap& map, const AtomOptions& options) {
-  return AtomBuilder(map, options).build();
-}
-
-Atoms merge_atoms(const Atoms& atoms, Eigen::Index count) {
-  if (atoms.size() <= count) return atoms;
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(atoms.size()));
-  std::iota(order.begin(), order.end(), Eigen::Index{0});
+Atoms merge_atoms(const Atoms& atoms, int count) {
+  if (atoms.count <= count) return atoms;
+  std::vector<int> order(static_cast<std::size_t>(atoms.count));
+  std::iota(order.begin(), order.end(), 0);
   const std::vector<Group> groups = divide(atoms, order, count);
-  Atoms merged;
+  Atoms merged(static_cast<int>(groups.size()));
   merged.scale = atoms.scale;
   merged.total = atoms.total;
-  const auto size = static_cast<Eigen::Index>(groups.size());
-  merged.direction.resize(3, size);
-  merged.illuminance.setZero(size, 3);
-  merged.luminance.setZero(size);
-  merged.solid_angle_sr.setZero(size);
-  for (Eigen::Index g = 0; g < size; ++g) {
-    const Group& group = groups[static_cast<std::size_t>(g)];
+  for (const Group& group : groups) {
     Vec3d moment = Vec3d::Zero();
-    for (Eigen::Index k = group.begin; k < group.end; ++k) {
-      const Eigen::Index i = order[static_cast<std::size_t>(k)];
-      moment += atoms.luminance[i] * atoms.direction.col(i);
-      merged.illuminance.row(g) += atoms.illuminance.row(i);
-      merged.luminance[g] += atoms.luminance[i];
-      merged.solid_angle_sr[g] += atoms.solid_angle_sr[i];
+    Rgbd weight = Rgbd::Zero();
+    double omega = 0;
+    for (int k = group.begin; k < group.end; ++k) {
+      const auto i = static_cast<std::size_t>(order[static_cast<std::size_t>(k)]);
+      moment += static_cast<double>(atoms.luminance[i]) * atoms.direction(static_cast<int>(i));
+      for (std::size_t c = 0; c < 3; ++c)
+        weight[static_cast<Eigen::Index>(c)] += static_cast<double>(atoms.weight[c][i]);
+      omega += static_cast<double>(atoms.solid_angle_sr[i]);
     }
     const double length = moment.norm();
-    merged.direction.col(g) = length > 1e-9 * merged.luminance[g]
-                                  ? Vec3d(moment / length)
-                                  : Vec3d(atoms.direction.col(order[static_cast<std::size_t>(group.begin)]));
+    const Vec3d direction = length > 1e-9 * group.luminance
+                                ? Vec3d(moment / length)
+                                : atoms.direction(order[static_cast<std::size_t>(group.begin)]);
+    merged.add(direction, weight, omega);
   }
+  merged.finish();
   return merged;
 }
 

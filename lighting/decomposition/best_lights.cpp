@@ -4,120 +4,391 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "lighting/decomposition/atoms.h"
-#include "lighting/decomposition/energy_distance.h"
+#include "lighting/decomposition/light_exchange.h"
 #include "lighting/decomposition/median_cut.h"
-#include "lighting/decomposition/moment_match.h"
 #include "lighting/decomposition/split_tree.h"
 
 namespace lightwell {
 namespace {
 
-using Powers = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+// Feedback keeps as much of the last frame's error as costs no more than this share of what all lights are worth.
+constexpr double kFeedbackCost = 0.1;
+constexpr double kMostFeedback = 0.9;
 
-constexpr int kMeansRounds = 12;
-// Most of the way is gone on merged atoms: the same places to the map's own accuracy, five times faster.
-constexpr Eigen::Index kLeastCoarseAtoms = 700;
-constexpr Eigen::Index kCoarseAtomsPerLight = 12;
-constexpr int kStartSteps = 40;          // each start, on merged atoms
-constexpr int kCoarseSteps = 60;         // the better one, on merged atoms
-constexpr int kFineSteps = 20;           // on all atoms
-constexpr double kBrightExponent = 1.6;  // of radiance, for the start that is drawn to what is bright
+constexpr double kHysteresis = 0.1;
+constexpr double kThreshold = 1e-5;
 
-// Spherical k-means (Lloyd) on weighted atoms; a light that no atom is nearest to goes where an atom is
-// served worst.
-Directions k_means(Directions lights, const Atoms& atoms, const Eigen::VectorXd& weight) {
-  for (int round = 0; round < kMeansRounds; ++round) {
-    Directions moment = Directions::Zero(3, lights.cols());
-    const Eigen::MatrixXd cosine = lights.transpose() * atoms.direction;
-    Eigen::VectorXd badness(atoms.size());
-    for (Eigen::Index k = 0; k < atoms.size(); ++k) {
-      Eigen::Index nearest = 0;
-      const double best = cosine.col(k).maxCoeff(&nearest);
-      moment.col(nearest) += weight[k] * atoms.direction.col(k);
-      badness[k] = weight[k] * (1 - best);
-    }
-    for (Eigen::Index i = 0; i < lights.cols(); ++i) {
-      const double length = moment.col(i).norm();
-      if (length > 0) {
-        lights.col(i) = moment.col(i) / length;
-        continue;
-      }
-      Eigen::Index worst = 0;
-      badness.maxCoeff(&worst);
-      badness[worst] = 0;
-      lights.col(i) = atoms.direction.col(worst);
-    }
-  }
-  return lights;
+int candidates_for(int count) {
+  return std::clamp(count, 16, 48);
 }
 
-Directions place(const Atoms& atoms, Eigen::Index count, double theta_max_rad) {
-  const Atoms coarse = merge_atoms(atoms, std::max(kLeastCoarseAtoms, kCoarseAtomsPerLight * count));
-  const Directions start = merge_atoms(atoms, count).direction;
-  const Eigen::ArrayXd radiance = coarse.luminance.array() / coarse.solid_angle_sr.array();
-  const double mean = radiance.mean();
-  Placement best;
-  double least = 0;
-  for (const double exponent : {1.0, kBrightExponent}) {
-    const Eigen::VectorXd weight = (coarse.solid_angle_sr.array() * (radiance / mean).pow(exponent)).matrix();
-    Placement p{k_means(start, coarse, weight), Eigen::VectorXd::Ones(start.cols())};
-    p = descend(std::move(p), coarse, theta_max_rad, kStartSteps);
-    const double e = energy(p, coarse);
-    if (best.weight.size() == 0 || e < least) {
-      best = std::move(p);
-      least = e;
-    }
-  }
-  best = descend(std::move(best), coarse, theta_max_rad, kCoarseSteps);
-  return descend(std::move(best), atoms, theta_max_rad, kFineSteps).direction;
-}
-
-Powers powers_at(const Directions& lights, const Atoms& atoms) {
-  const Eigen::MatrixXd to_atoms = softened_distances(lights, atoms.direction);
-  const Eigen::MatrixXd among = softened_distances(lights, lights);
-  Powers powers = Powers::Zero(lights.cols(), 3);
-  Eigen::VectorXd start = Eigen::VectorXd::Ones(lights.cols());
-  for (int c = 0; c < 3; ++c) {
-    const double total = atoms.illuminance.col(c).sum();
-    if (!(total > 0)) continue;
-    start = nearest_weights(among, to_atoms * atoms.illuminance.col(c) / total, start);
-    powers.col(c) = start * total;
-  }
-  match_moments(lights, lambertian_moments(atoms.direction) * atoms.illuminance, powers);
-  return powers;
-}
-
-std::vector<DirectionalLight> as_lights(const Directions& directions, const Powers& powers,
-                                        const Rgbd& total) {
-  std::vector<DirectionalLight> lights(static_cast<std::size_t>(directions.cols()));
-  const Rgbd sum = powers.colwise().sum().transpose().array();
-  for (std::size_t i = 0; i < lights.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    lights[i].direction = directions.col(k).normalized().cast<float>();
-    for (int c = 0; c < 3; ++c)
-      lights[i].illuminance[c] = sum[c] > 0 ? static_cast<float>(powers(k, c) * (total[c] / sum[c])) : 0.0f;
-  }
-  return lights;
-}
+using Rows = std::array<std::vector<double>, 3>;
 
 }  // namespace
 
+struct BestLights::State {
+  State(const PolarGrid& g, int n, Effort e)
+      : grid(g),
+        count(n),
+        effort(e),
+        maker(g, n),
+        atoms(maker.capacity()),
+        error(maker.capacity() + n + placement_kernel::kLanes),
+        lights(n),
+        powers(n),
+        exchange(n, candidates_for(n)),
+        dark{powers.no_dark(), powers.no_dark(), powers.no_dark()},
+        luminance_dark(powers.no_dark()) {
+    const auto stride = static_cast<std::size_t>(powers.stride()) + placement_kernel::kLanes;
+    for (auto* rows : {&power, &potential, &feedback, &target})
+      for (auto& row : *rows) row.assign(stride, 0);
+    for (auto* row : {&luminance_power, &still, &moving, &scratch}) row->assign(stride, 0);
+    directions.assign(static_cast<std::size_t>(n), Vec3d::UnitY());
+    moments.resize(static_cast<std::size_t>(n), MomentVector::Zero());
+    ids.assign(static_cast<std::size_t>(n), 0);
+    nearest.assign(atoms.x.size(), 0);
+    distance.assign(atoms.x.size(), 0);
+    quadrant_score.assign(4 * static_cast<std::size_t>(n), 0);
+    quadrant_atom.assign(4 * static_cast<std::size_t>(n), -1);
+    order.reserve(4 * static_cast<std::size_t>(n));
+    places.reserve(static_cast<std::size_t>(candidates_for(n)));
+    place_points = Atoms(candidates_for(n));
+    place_rest.assign(place_points.x.size() + 4, 0);
+    place_feedback.assign(place_points.x.size() + 4, 0);
+    out.resize(static_cast<std::size_t>(n));
+  }
+
+  PolarGrid grid;
+  int count;
+  Effort effort;
+  AtomMaker maker;
+  Atoms atoms;
+  // The last frame's error: its lights, and its atoms with their sign turned. Weights in shares of that frame's luminance.
+  Atoms error;
+  Eigen::Array3d error_total = Eigen::Array3d::Zero();  // that frame's illuminance
+  double error_scale = 0;
+  MomentMatrix atom_moments, error_moments;
+  bool placed = false;
+  bool has_error = false;
+
+  std::vector<Vec3d> directions;
+  std::vector<MomentVector> moments;  // of the lights
+  std::vector<std::uint32_t> ids;
+  std::uint32_t next_id = 1;
+  Atoms lights;  // as points
+  LightPowers powers;
+  LightExchange exchange;
+  std::array<LightPowers::Dark, 3> dark;
+  LightPowers::Dark luminance_dark;
+  Rows power, potential, feedback, target;  // a light: its power, k with the map, k with the last error
+  std::vector<double> luminance_power, still, moving, scratch;
+
+  std::vector<int> nearest, quadrant_atom, order;
+  std::vector<float> distance, quadrant_score;
+  std::vector<Vec3d> places;
+  Atoms place_points;
+  std::vector<double> place_rest, place_feedback;
+  Report report;
+  std::vector<DirectionalLight> out;
+
+  static std::array<double*, 3> rows(Rows& r) { return {r[0].data(), r[1].data(), r[2].data()}; }
+
+  void set_light(int i, const Vec3d& d) {
+    const auto k = static_cast<std::size_t>(i);
+    directions[k] = d.cast<float>().cast<double>();  // what the float kernels see
+    moments[k] = lambertian_moments(directions[k]);
+    ids[k] = next_id++;
+    lights.x[k] = static_cast<float>(d.x());
+    lights.y[k] = static_cast<float>(d.y());
+    lights.z[k] = static_cast<float>(d.z());
+    lights.ground[k] = static_cast<float>(ground_share(d.y()));
+  }
+
+  void add_moment_potential(const MomentVector& at, const MomentMatrix& of, std::size_t i, Rows& to) const {
+    const Eigen::RowVector3d value = moment_weight() * at.transpose() * of;
+    for (std::size_t c = 0; c < 3; ++c) to[c][i] += value[static_cast<Eigen::Index>(c)];
+  }
+
+  // k of one distribution with lights first … last − 1.
+  void potentials_at(const Atoms& from, const MomentMatrix& of, int first, int last, Rows& to) {
+    auto at = lights.points();
+    at.x += first, at.y += first, at.z += first, at.s += first;
+    at.count = last - first;
+    auto out_rows = rows(to);
+    for (double*& row : out_rows) row += first;
+    placement_kernel::kernels().potentials(from.points(), from.weights().data(), kernel_shares(), at,
+                                           out_rows.data());
+    for (int i = first; i < last; ++i)
+      add_moment_potential(moments[static_cast<std::size_t>(i)], of, static_cast<std::size_t>(i), to);
+  }
+
+  static void sum_moments(const Atoms& of, MomentMatrix& to) {
+    to.setZero();
+    placement_kernel::kernels().add_moments(of.points(), of.weights().data(), to.data());
+  }
+
+  void start() {
+    lights.count = count;
+    if (atoms.count > count) {
+      const std::vector<Vec3d> found = place_lights(atoms, count, grid.theta_max_rad, effort);
+      for (int i = 0; i < count; ++i) set_light(i, found[static_cast<std::size_t>(i)]);
+    } else {
+      // The rest stands spread out, so that no two are one place.
+      for (int i = 0; i < count; ++i) {
+        const double share = (i + 0.5) / count;
+        const double y = 1 - share * (1 - std::cos(std::min(grid.theta_max_rad, kPi)));
+        set_light(i, i < atoms.count
+                         ? atoms.direction(i)
+                         : direction_from_spherical({std::acos(std::clamp(y, -1.0, 1.0)), 2.399963 * i}));
+      }
+    }
+    powers.place(directions);
+    for (auto& d : dark) d = powers.no_dark();
+    luminance_dark = powers.no_dark();
+    placed = true;
+    has_error = false;
+  }
+
+  // The last error, in shares of this frame's luminance; light that went out takes its error with it.
+  void scale_error() {
+    Eigen::Array3d factor = Eigen::Array3d::Zero();
+    if (has_error)
+      for (int c = 0; c < 3; ++c) {
+        const double before = error_total[c], now = atoms.total[c];
+        factor[c] = before > 0 ? std::min(1.0, now / before) * (error_scale / atoms.scale) : 0;
+        if (!std::isfinite(factor[c])) factor[c] = 0;
+      }
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double f = factor[static_cast<Eigen::Index>(c)];
+      if (f == 1) continue;
+      for (int k = 0; k < error.padded(); ++k)
+        error.weight[c][static_cast<std::size_t>(k)] *= static_cast<float>(f);
+      for (int i = 0; i < count; ++i) feedback[c][static_cast<std::size_t>(i)] *= f;
+      error_moments.col(static_cast<Eigen::Index>(c)) *= f;
+    }
+    for (int k = 0; k < error.padded(); ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      error.luminance[i] =
+          0.2126f * error.weight[0][i] + 0.7152f * error.weight[1][i] + 0.0722f * error.weight[2][i];
+    }
+  }
+
+  static void to_luminance(const Rows& rgb, std::vector<double>& out_row, int n) {
+    for (int i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      out_row[k] = 0.2126 * rgb[0][k] + 0.7152 * rgb[1][k] + 0.0722 * rgb[2][k];
+    }
+  }
+
+  // Of every light and quadrant around it the atom that is served worst; the worst of these.
+  void find_places() {
+    placement_kernel::kernels().nearest(atoms.points(), light_points(), nearest.data(), distance.data());
+    std::fill(quadrant_score.begin(), quadrant_score.end(), 0.0f);
+    std::fill(quadrant_atom.begin(), quadrant_atom.end(), -1);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(atoms.count); ++k) {
+      const auto i = static_cast<std::size_t>(nearest[k]);
+      const float dx = atoms.x[k] - lights.x[i], dz = atoms.z[k] - lights.z[i];
+      const float along = lights.z[i] * dx - lights.x[i] * dz;
+      const float up = atoms.y[k] - lights.y[i];
+      const std::size_t q = 4 * i + (along > 0 ? 1 : 0) + (up > 0 ? 2 : 0);
+      const float score = atoms.luminance[k] * distance[k];
+      if (score > quadrant_score[q]) {
+        quadrant_score[q] = score;
+        quadrant_atom[q] = static_cast<int>(k);
+      }
+    }
+    order.clear();
+    for (std::size_t q = 0; q < quadrant_atom.size(); ++q)
+      if (quadrant_atom[q] >= 0) order.push_back(static_cast<int>(q));
+    const auto most = static_cast<std::size_t>(candidates_for(count));
+    const auto worse = [&](int a, int b) {
+      const float p = quadrant_score[static_cast<std::size_t>(a)],
+                  q = quadrant_score[static_cast<std::size_t>(b)];
+      return p > q || (p == q && a < b);
+    };
+    if (order.size() > most) {
+      std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(most), order.end(), worse);
+      order.resize(most);
+    }
+    places.clear();
+    place_points.count = 0;
+    for (const int q : order) {
+      const Vec3d d = atoms.direction(quadrant_atom[static_cast<std::size_t>(q)]);
+      places.push_back(d);
+      place_points.add(d, Rgbd::Zero(), 0);
+    }
+    place_points.finish();
+  }
+
+  placement_kernel::Points light_points() const {
+    auto points = lights.points();
+    points.count = count;
+    return points;
+  }
+
+  void luminance_potential(const Atoms& from, const MomentMatrix& of, std::vector<double>& to) const {
+    auto at = place_points.points();
+    at.count = place_points.count;
+    placement_kernel::kernels().potential(from.points(), from.luminance.data(), kernel_shares(), at,
+                                          to.data());
+    const MomentVector mean = of * Eigen::Vector3d(0.2126, 0.7152, 0.0722);
+    for (std::size_t c = 0; c < places.size(); ++c)
+      to[c] += moment_weight() * lambertian_moments(places[c]).dot(mean);
+  }
+
+  void exchange_lights() {
+    to_luminance(potential, still, count);
+    powers.solve(still, luminance_dark, luminance_power);
+    const double worth = exchange.weigh(powers, luminance_power, luminance_dark);
+    double kept = 0;
+    if (has_error) {
+      to_luminance(feedback, moving, count);
+      powers.multiply_by_inverse(moving, scratch);
+      double cost = 0;
+      for (int i = 0; i < count; ++i)
+        cost += moving[static_cast<std::size_t>(i)] * scratch[static_cast<std::size_t>(i)];
+      kept = cost > 0 ? std::min(kMostFeedback, std::sqrt(kFeedbackCost * worth / cost)) : kMostFeedback;
+    }
+    report.feedback = kept;
+    report.exchanges = 0;
+    find_places();
+    if (places.empty()) return;
+    luminance_potential(atoms, atom_moments, place_rest);
+    if (has_error && kept > 0) {
+      luminance_potential(error, error_moments, place_feedback);
+      for (std::size_t c = 0; c < places.size(); ++c) place_rest[c] += kept * place_feedback[c];
+      for (int i = 0; i < count; ++i)
+        still[static_cast<std::size_t>(i)] += kept * moving[static_cast<std::size_t>(i)];
+      powers.solve(still, luminance_dark, luminance_power);
+      exchange.weigh(powers, luminance_power, luminance_dark);
+    }
+    LightExchange::Options options;
+    options.most = std::max(2, count / 4);
+    options.hysteresis = kHysteresis;
+    options.threshold = kThreshold;
+    options.least_distance = 0.1 / std::sqrt(count);
+    const auto pairs = exchange.choose(directions, luminance_power, places, place_rest, options);
+    for (const auto& [light, place] : pairs) {
+      set_light(light, places[static_cast<std::size_t>(place)]);
+      powers.move(light, directions);
+      potentials_at(atoms, atom_moments, light, light + 1, potential);
+      if (has_error) potentials_at(error, error_moments, light, light + 1, feedback);
+    }
+    report.exchanges = static_cast<int>(pairs.size());
+  }
+
+  void solve_powers() {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double total = atoms.total[static_cast<Eigen::Index>(c)] / atoms.scale;
+      if (!(total > 0)) {
+        std::fill(power[c].begin(), power[c].end(), 0.0);
+        continue;
+      }
+      for (int i = 0; i < count; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        target[c][k] = potential[c][k] + report.feedback * feedback[c][k];
+      }
+      powers.solve(target[c], dark[c], power[c]);
+      double sum = 0;
+      for (int i = 0; i < count; ++i) sum += power[c][static_cast<std::size_t>(i)];
+      for (int i = 0; i < count; ++i)
+        power[c][static_cast<std::size_t>(i)] =
+            sum > 0 ? power[c][static_cast<std::size_t>(i)] * (total / sum) : total / count;
+    }
+  }
+
+  void keep_error() {
+    error.count = atoms.count;
+    const auto copy = [&](const std::vector<float>& from, std::vector<float>& to, float sign) {
+      for (std::size_t k = 0; k < static_cast<std::size_t>(atoms.count); ++k) to[k] = sign * from[k];
+    };
+    copy(atoms.x, error.x, 1);
+    copy(atoms.y, error.y, 1);
+    copy(atoms.z, error.z, 1);
+    copy(atoms.ground, error.ground, 1);
+    for (std::size_t c = 0; c < 3; ++c) copy(atoms.weight[c], error.weight[c], -1);
+    error_moments = -atom_moments;
+    for (int i = 0; i < count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const Rgbd w(power[0][k], power[1][k], power[2][k]);
+      error.add(directions[k], w, 0);
+      error_moments += moments[k] * w.matrix().transpose();
+    }
+    error.finish();
+    for (std::size_t c = 0; c < 3; ++c) {
+      powers.potential(power[c], feedback[c]);
+      for (int i = 0; i < count; ++i)
+        feedback[c][static_cast<std::size_t>(i)] -= potential[c][static_cast<std::size_t>(i)];
+    }
+    error_total = atoms.total;
+    error_scale = atoms.scale;
+    has_error = true;
+  }
+
+  void write_out() {
+    for (int i = 0; i < count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      DirectionalLight& light = out[k];
+      light.direction = directions[k].cast<float>();
+      light.direction.normalize();
+      for (std::size_t c = 0; c < 3; ++c)
+        light.illuminance[static_cast<Eigen::Index>(c)] = static_cast<float>(power[c][k] * atoms.scale);
+      light.id = ids[k];
+      light.parent = -1;
+    }
+    out = progressive_order(out);
+  }
+
+  void process(const PolarMap& map) {
+    maker.make(map, atoms);
+    report = {};
+    if (!(atoms.scale > 0)) {
+      for (DirectionalLight& light : out) light.illuminance = Rgb::Zero();
+      has_error = false;
+      return;
+    }
+    sum_moments(atoms, atom_moments);
+    const bool first = !placed;
+    if (first) start();
+    if (has_error) scale_error();
+    potentials_at(atoms, atom_moments, 0, count, potential);
+    if (!first) {
+      powers.refine();
+      exchange_lights();
+    }
+    solve_powers();
+    keep_error();
+    write_out();
+  }
+};
+
+BestLights::BestLights(const PolarGrid& grid, int count, Effort first)
+    : state_(std::make_unique<State>(grid, count, first)) {}
+BestLights::BestLights(BestLights&&) noexcept = default;
+BestLights& BestLights::operator=(BestLights&&) noexcept = default;
+BestLights::~BestLights() = default;
+
+std::span<const DirectionalLight> BestLights::process(const PolarMap& map) {
+  state_->process(map);
+  return state_->out;
+}
+
+void BestLights::reset() noexcept {
+  state_->placed = false;
+  state_->has_error = false;
+}
+
+BestLights::Report BestLights::report() const noexcept {
+  return state_->report;
+}
+
 std::vector<DirectionalLight> best_lights(const PolarMap& map, int count) {
   if (count > kMostPlacedLights) return median_cut(map, count);
-  // More lights resolve more: the atoms stay several times finer than what the lights can show.
-  const Atoms atoms = make_atoms(map, {1.0 / std::max(1500, 10 * count), 1.0 / std::max(800, 5 * count)});
-  if (atoms.size() == 0) return median_cut(map, count);
-  if (atoms.size() > count) {
-    const Directions lights = place(atoms, count, map.grid.theta_max_rad);
-    return progressive_order(as_lights(lights, powers_at(lights, atoms), atoms.total));
-  }
-  std::vector<DirectionalLight> lights = as_lights(atoms.direction, atoms.illuminance, atoms.total);
-  DirectionalLight dark = lights.front();
-  dark.illuminance = Rgb::Zero();
-  lights.resize(static_cast<std::size_t>(count), dark);
-  return progressive_order(lights);
+  BestLights lights(map.grid, count, Effort::thorough);
+  const auto out = lights.process(map);
+  return {out.begin(), out.end()};
 }
 
 }  // namespace lightwell

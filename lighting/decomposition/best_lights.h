@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+#include <span>
 #include <vector>
 
+#include "lighting/decomposition/light_placement.h"
 #include "lighting/light_set.h"
 #include "lighting/polar_map.h"
 
@@ -11,13 +14,44 @@ namespace lightwell {
 
 inline constexpr int kMostPlacedLights = 512;
 
-// The project's own static decomposition: N weighted directions of least energy distance to the map, in
-// progressive order with parents. Atoms of the map → two starts by weighted k-means (one drawn to what is
-// bright) → descent of each on the energy distance, the better is kept → non-negative powers a channel →
-// powers nudged to the map's Lambertian moments → split tree. Power sums to the map's total a channel.
-// Deterministic. Above kMostPlacedLights the descent costs more than it gains: there the lights are median
-// cut's (lighting/decomposition/median_cut.h). A map of fewer lit atoms than lights gives a light each and the rest without
-// power. count: 1 to 100,000; lights stay within theta_max of the map's grid
+// The project's own decomposition: N lights of least cost to show the map by (error_kernel.h), frame by frame.
+//
+// A light's direction is fixed in the world while it serves: dragging lights makes the edges of shadows crawl and pop,
+// fading powers does not. Each frame: map → atoms → powers of least cost at the lights' places, with the last frame's
+// error fed back, so that what an exchange changes is spread over the next frames and nothing lags → lights that are
+// worth little are exchanged for places that are worth more (light_exchange.h) → powers again. The powers sum to the
+// map's total a channel.
+//
+// After the first frame nothing is allocated and nothing fails; a black map gives lights of no power that keep their
+// places. A map of fewer atoms than lights gives a light each and the rest without power.
+class BestLights {
+ public:
+  // count: 1 to kMostPlacedLights
+  BestLights(const PolarGrid& grid, int count, Effort first = Effort::frame);
+  BestLights(BestLights&&) noexcept;
+  BestLights& operator=(BestLights&&) noexcept;
+  ~BestLights();
+
+  // map: of the grid given. Progressive, with parents; a light keeps its id while it keeps its place. The lights stay
+  // valid until the next call.
+  std::span<const DirectionalLight> process(const PolarMap& map);
+  // Forgets all frames.
+  void reset() noexcept;
+
+  // What the last frame did.
+  struct Report {
+    int exchanges = 0;
+    double feedback = 0;  // share of the last frame's error that was kept, 0 to 0.9
+  };
+  [[nodiscard]] Report report() const noexcept;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// The lights of one map by itself. Above kMostPlacedLights they are median cut's (lighting/decomposition/median_cut.h):
+// there placing costs more than it gains. count: 1 to 100,000
 std::vector<DirectionalLight> best_lights(const PolarMap& map, int count);
 
 }  // namespace lightwell

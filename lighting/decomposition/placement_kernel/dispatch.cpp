@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "lighting/decomposition/placement_kernel/kernel.h"
+
+namespace lightwell::placement_kernel {
+
+#if defined(__x86_64__)
+extern const Kernels kAvx2Kernels;
+
+const Kernels* avx2_kernels() {
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? &kAvx2Kernels : nullptr;
+}
+#else
+const Kernels* avx2_kernels() {
+  return nullptr;
+}
+#endif
+
+const Kernels& kernels() {
+  static const Kernels& best = avx2_kernels() ? *avx2_kernels() : kPortableKernels;
+  return best;
+}
+
+}  // namespace lightwell::placement_kernel
