@@ -14,14 +14,19 @@ namespace lightwell {
 namespace {
 
 // Feedback keeps as much of the last frame's error as costs no more than this share of what all lights are worth.
-constexpr double kFeedbackCost = 0.1;
+constexpr double kFeedbackCost = 0.003;
 constexpr double kMostFeedback = 0.9;
 
-constexpr double kHysteresis = 0.1;
+constexpr double kHysteresis = 0.5;  // a light leaves for what is worth half as much again
 constexpr double kThreshold = 1e-5;
 
+// A place nearer to a light than this is that light's.
+constexpr float kLeastDistance = 0.0035f;  // 0.2°
+
+int kImprovements = getenv("IM") ? atoi(getenv("IM")) : 3, kPasses = getenv("PA") ? atoi(getenv("PA")) : 4,
+    kSteps = getenv("ST") ? atoi(getenv("ST")) : 30;
 int candidates_for(int count) {
-  return std::clamp(count, 16, 48);
+  return std::clamp(count + count / 2, 16, 96);
 }
 
 using Rows = std::array<std::vector<double>, 3>;
@@ -193,6 +198,7 @@ struct BestLights::State {
       const float along = lights.z[i] * dx - lights.x[i] * dz;
       const float up = atoms.y[k] - lights.y[i];
       const std::size_t q = 4 * i + (along > 0 ? 1 : 0) + (up > 0 ? 2 : 0);
+      if (distance[k] < kLeastDistance) continue;
       const float score = atoms.luminance[k] * distance[k];
       if (score > quadrant_score[q]) {
         quadrant_score[q] = score;
@@ -256,16 +262,8 @@ struct BestLights::State {
     find_places();
     if (places.empty()) return;
     luminance_potential(atoms, atom_moments, place_rest);
-    if (has_error && kept > 0) {
-      luminance_potential(error, error_moments, place_feedback);
-      for (std::size_t c = 0; c < places.size(); ++c) place_rest[c] += kept * place_feedback[c];
-      for (int i = 0; i < count; ++i)
-        still[static_cast<std::size_t>(i)] += kept * moving[static_cast<std::size_t>(i)];
-      powers.solve(still, luminance_dark, luminance_power);
-      exchange.weigh(powers, luminance_power, luminance_dark);
-    }
     LightExchange::Options options;
-    options.most = std::max(2, count / 4);
+    options.most = kMostEx > 0 ? kMostEx : std::max(2, count / 4);
     options.hysteresis = kHysteresis;
     options.threshold = kThreshold;
     options.least_distance = 0.1 / std::sqrt(count);
@@ -341,6 +339,27 @@ struct BestLights::State {
     out = progressive_order(out);
   }
 
+  // Of the map of the last frame: exchanges until none pays, then all lights down to the nearest places of least cost.
+  void improve() {
+    for (int round = 0; round < kImprovements && atoms.count > count; ++round) {
+      for (int pass = 0; pass < kPasses; ++pass) {
+        has_error = false;
+        exchange_lights();
+        if (report.exchanges == 0) break;
+      }
+      if (round + 1 < kImprovements) place_at(descend_lights(atoms, directions, grid.theta_max_rad, kSteps));
+    }
+    solve_powers();
+    keep_error();
+    write_out();
+  }
+
+  void place_at(const std::vector<Vec3d>& found) {
+    for (int i = 0; i < count; ++i) set_light(i, found[static_cast<std::size_t>(i)]);
+    powers.place(directions);
+    potentials_at(atoms, atom_moments, 0, count, potential);
+  }
+
   void process(const PolarMap& map) {
     maker.make(map, atoms);
     report = {};
@@ -355,12 +374,12 @@ struct BestLights::State {
     if (has_error) scale_error();
     potentials_at(atoms, atom_moments, 0, count, potential);
     if (!first) {
-      powers.refine();
       exchange_lights();
     }
     solve_powers();
     keep_error();
     write_out();
+    if (first && effort == Effort::thorough) improve();
   }
 };
 

@@ -118,7 +118,7 @@ std::span<const LightExchange::Pair> LightExchange::choose(std::span<const Vec3d
   const auto stride = static_cast<std::size_t>(stride_);
   places_ = std::min(static_cast<int>(places.size()), most_places_);
   pairs_.clear();
-  std::copy(w.begin(), w.end(), w_.begin());
+  std::copy_n(w.begin(), size_, w_.begin());
   std::fill(fresh_.begin(), fresh_.end(), char{0});
   std::fill(taken_.begin(), taken_.end(), char{0});
   for (int c = 0; c < places_; ++c)

@@ -250,4 +250,11 @@ std::vector<Vec3d> place_lights(const Atoms& atoms, int count, double theta_max_
   return best.direction;
 }
 
+std::vector<Vec3d> descend_lights(const Atoms& atoms, std::vector<Vec3d> lights, double theta_max_rad,
+                                  int steps) {
+  Placement p{std::move(lights), {}};
+  Descent(atoms, theta_max_rad).run(p, steps);
+  return p.direction;
+}
+
 }  // namespace lightwell

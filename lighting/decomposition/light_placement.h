@@ -19,4 +19,8 @@ enum class Effort {
 // atoms: more than count, which is 1 at least; lights stay inside the cap of theta_max_rad
 std::vector<Vec3d> place_lights(const Atoms& atoms, int count, double theta_max_rad, Effort effort);
 
+// Lights that stand somewhere, further down to the nearest places of least cost.
+std::vector<Vec3d> descend_lights(const Atoms& atoms, std::vector<Vec3d> lights, double theta_max_rad,
+                                  int steps);
+
 }  // namespace lightwell

@@ -10,7 +10,6 @@ namespace lightwell {
 namespace {
 
 constexpr double kLeastPivot = 1e-9;  // below the ridge: what is left of a light that others stand for
-constexpr int kColumnsAFrame = 2;
 constexpr int kMostRounds = 24;
 
 }  // namespace
@@ -20,7 +19,7 @@ LightPowers::LightPowers(int lights) : size_(lights), stride_((lights + 3) / 4 *
   matrix_.assign(n * n, 0);
   inverse_.assign(n * n, 0);
   small_.assign(n * n, 0);
-  for (auto* v : {&column_, &work_, &unconstrained_, &multiplier_}) v->assign(n, 0);
+  for (auto* v : {&column_, &work_, &correction_, &unconstrained_, &multiplier_}) v->assign(n, 0);
 }
 
 LightPowers::Dark LightPowers::no_dark() const {
@@ -43,47 +42,53 @@ void LightPowers::place(std::span<const Vec3d> directions) {
       matrix_[at(i, j)] = g(i, j);
       inverse_[at(i, j)] = (inverse(i, j) + inverse(j, i)) / 2;
     }
-  stale_columns_ = 0;
 }
 
+// x += X (b − G x), X the inverse as it is: x of G x = b with what rounding has done to X squared away.
+void LightPowers::correct(std::span<const double> b, std::span<double> x, int without) noexcept {
+  const auto& kernel = placement_kernel::kernels();
+  kernel.multiply(matrix_.data(), size_, stride_, x.data(), work_.data());
+  for (int j = 0; j < size_; ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    work_[k] = b[k] - work_[k];
+  }
+  if (without >= 0) work_[static_cast<std::size_t>(without)] = 0;
+  kernel.multiply(inverse_.data(), size_, stride_, work_.data(), correction_.data());
+  for (int j = 0; j < size_; ++j) x[static_cast<std::size_t>(j)] += correction_[static_cast<std::size_t>(j)];
+}
+
+// Both updates start from a corrected vector: then errors that the rest of the inverse has are passed on as they are and
+// do not grow, however often lights move.
 void LightPowers::move(int i, std::span<const Vec3d> directions) noexcept {
   const auto& kernel = placement_kernel::kernels();
+  const auto own_place = static_cast<std::size_t>(i);
   // Out: the inverse without light i.
   std::copy_n(&inverse_[at(i, 0)], stride_, column_.data());
-  const double pivot = std::max(column_[static_cast<std::size_t>(i)], 1e-300);
-  kernel.add_outer(inverse_.data(), size_, stride_, -1 / pivot, column_.data(), column_.data());
+  std::fill(unconstrained_.begin(), unconstrained_.end(), 0.0);
+  unconstrained_[own_place] = 1;
+  correct(unconstrained_, column_, -1);
+  for (int j = 0; j < size_; ++j)
+    inverse_[at(i, j)] = inverse_[at(j, i)] = column_[static_cast<std::size_t>(j)];
+  kernel.add_outer(inverse_.data(), size_, stride_, -1 / std::max(column_[own_place], 1e-300), column_.data(),
+                   column_.data());
   for (int j = 0; j < size_; ++j) inverse_[at(i, j)] = inverse_[at(j, i)] = 0;
   // In: by its Schur complement.
   for (int j = 0; j < size_; ++j)
     column_[static_cast<std::size_t>(j)] =
-        error_kernel(directions[static_cast<std::size_t>(i)], directions[static_cast<std::size_t>(j)]);
-  column_[static_cast<std::size_t>(i)] += kRidge;
+        error_kernel(directions[own_place], directions[static_cast<std::size_t>(j)]);
+  column_[own_place] += kRidge;
   for (int j = 0; j < size_; ++j)
     matrix_[at(i, j)] = matrix_[at(j, i)] = column_[static_cast<std::size_t>(j)];
-  const double own = column_[static_cast<std::size_t>(i)];
-  column_[static_cast<std::size_t>(i)] = 0;
-  kernel.multiply(inverse_.data(), size_, stride_, column_.data(), work_.data());
+  const double own = column_[own_place];
+  column_[own_place] = 0;
+  kernel.multiply(inverse_.data(), size_, stride_, column_.data(), unconstrained_.data());
+  correct(column_, unconstrained_, i);
   double complement = own;
   for (int j = 0; j < size_; ++j)
-    complement -= column_[static_cast<std::size_t>(j)] * work_[static_cast<std::size_t>(j)];
-  work_[static_cast<std::size_t>(i)] = -1;
-  kernel.add_outer(inverse_.data(), size_, stride_, 1 / std::max(complement, kLeastPivot), work_.data(),
-                   work_.data());
-  stale_columns_ = size_;
-}
-
-void LightPowers::refine() noexcept {
-  // Newton and Schulz: X + X(I − GX), a column at a time.
-  const auto& kernel = placement_kernel::kernels();
-  for (int k = 0; k < kColumnsAFrame && stale_columns_ > 0; ++k, --stale_columns_) {
-    const int j = next_column_ = (next_column_ + 1) % size_;
-    kernel.multiply(matrix_.data(), size_, stride_, &inverse_[at(j, 0)], work_.data());
-    for (double& v : work_) v = -v;
-    work_[static_cast<std::size_t>(j)] += 1;
-    kernel.multiply(inverse_.data(), size_, stride_, work_.data(), column_.data());
-    for (int i = 0; i < size_; ++i)
-      inverse_[at(i, j)] = inverse_[at(j, i)] = inverse_[at(j, i)] + column_[static_cast<std::size_t>(i)];
-  }
+    complement -= column_[static_cast<std::size_t>(j)] * unconstrained_[static_cast<std::size_t>(j)];
+  unconstrained_[own_place] = -1;
+  kernel.add_outer(inverse_.data(), size_, stride_, 1 / std::max(complement, kLeastPivot),
+                   unconstrained_.data(), unconstrained_.data());
 }
 
 void LightPowers::multiply_by_inverse(std::span<const double> b, std::span<double> out) const noexcept {
@@ -133,19 +138,10 @@ bool LightPowers::solve_for_multipliers(std::span<const double> y, const std::ve
 void LightPowers::solve(std::span<const double> b, Dark& dark, std::span<double> w) noexcept {
   const auto& kernel = placement_kernel::kernels();
   kernel.multiply(inverse_.data(), size_, stride_, b.data(), unconstrained_.data());
-  // One step of iterative refinement: the inverse has been updated many times.
-  kernel.multiply(matrix_.data(), size_, stride_, unconstrained_.data(), work_.data());
-  for (int i = 0; i < size_; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    work_[k] = b[k] - work_[k];
-  }
-  kernel.multiply(inverse_.data(), size_, stride_, work_.data(), column_.data());
+  correct(b, unconstrained_, -1);
   double largest = 0;
-  for (int i = 0; i < size_; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    unconstrained_[k] += column_[k];
-    largest = std::max(largest, std::abs(unconstrained_[k]));
-  }
+  for (int i = 0; i < size_; ++i)
+    largest = std::max(largest, std::abs(unconstrained_[static_cast<std::size_t>(i)]));
   const double least = 1e-9 * largest;
   int fewest = size_ + 1, patience = 3;
   for (int round = 0; round < kMostRounds; ++round) {

@@ -29,9 +29,6 @@ class LightPowers {
   void place(std::span<const Vec3d> directions);
   // Light i comes to directions[i], the others are as they were.
   void move(int i, std::span<const Vec3d> directions) noexcept;
-  // Spends O(N²) on what rounding has done to the inverse since the lights were placed. To be called every frame.
-  void refine() noexcept;
-
   // b and w: stride() values, b[i] = Σ light · k(direction i, light's). w[i] ≥ 0; 0 behind the lights.
   void solve(std::span<const double> b, Dark& dark, std::span<double> w) noexcept;
 
@@ -45,13 +42,12 @@ class LightPowers {
   [[nodiscard]] std::size_t at(int i, int j) const {
     return static_cast<std::size_t>(i) * static_cast<std::size_t>(stride_) + static_cast<std::size_t>(j);
   }
+  void correct(std::span<const double> b, std::span<double> x, int without) noexcept;
   bool solve_for_multipliers(std::span<const double> y, const std::vector<int>& dark) noexcept;
 
   int size_, stride_;
   std::vector<double> matrix_, inverse_;  // [stride][stride], row by row
-  std::vector<double> column_, work_, unconstrained_, small_, multiplier_;
-  int stale_columns_ = 0;  // of the inverse, to refine
-  int next_column_ = 0;
+  std::vector<double> column_, work_, correction_, unconstrained_, small_, multiplier_;
 };
 
 }  // namespace lightwell
