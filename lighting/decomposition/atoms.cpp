@@ -108,20 +108,19 @@ void AtomMaker::sum_cells(const PolarMap& map) noexcept {
                       {sums_[0].data(), sums_[1].data(), sums_[2].data(), sums_[3].data(), sums_[4].data()});
     }
     for (int column = 0; column < kColumns; ++column) {
-      float r = 0, g = 0, b = 0, x = 0, y = 0, z = 0;
+      double r = 0, g = 0, b = 0, x = 0, y = 0, z = 0;
       for (int sector = columns_[static_cast<std::size_t>(column)];
            sector < columns_[static_cast<std::size_t>(column) + 1]; ++sector) {
         const auto s = static_cast<std::size_t>(sector);
-        r += sums_[0][s];
-        g += sums_[1][s];
-        b += sums_[2][s];
-        x += sums_[3][s] * sine_[s];
-        y += sums_[4][s];
-        z += sums_[3][s] * cosine_[s];
+        const auto across = static_cast<double>(sums_[3][s]);
+        r += static_cast<double>(sums_[0][s]);
+        g += static_cast<double>(sums_[1][s]);
+        b += static_cast<double>(sums_[2][s]);
+        x += across * static_cast<double>(sine_[s]);
+        y += static_cast<double>(sums_[4][s]);
+        z += across * static_cast<double>(cosine_[s]);
       }
-      cells_[row * kColumns + static_cast<std::size_t>(column)] = {
-          static_cast<double>(r), static_cast<double>(g), static_cast<double>(b),
-          static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+      cells_[row * kColumns + static_cast<std::size_t>(column)] = {r, g, b, x, y, z};
     }
   }
 }

@@ -8,7 +8,7 @@
 
 #include "lighting/decomposition/light_exchange.h"
 #include "lighting/decomposition/median_cut.h"
-#include "lighting/decomposition/split_tree.h"
+#include "lighting/decomposition/persistent_tree.h"
 
 namespace lightwell {
 namespace {
@@ -44,6 +44,7 @@ struct BestLights::State {
         lights(n),
         powers(n),
         exchange(n, candidates_for(n)),
+        tree(n),
         dark{powers.no_dark(), powers.no_dark(), powers.no_dark()},
         luminance_dark(powers.no_dark()) {
     const auto stride = static_cast<std::size_t>(powers.stride()) + placement_kernel::kLanes;
@@ -58,6 +59,7 @@ struct BestLights::State {
     quadrant_score.assign(4 * static_cast<std::size_t>(n), 0);
     quadrant_atom.assign(4 * static_cast<std::size_t>(n), -1);
     order.reserve(4 * static_cast<std::size_t>(n));
+    moved.reserve(static_cast<std::size_t>(n));
     places.reserve(static_cast<std::size_t>(candidates_for(n)));
     place_points = Atoms(candidates_for(n));
     place_rest.assign(place_points.x.size() + 4, 0);
@@ -85,6 +87,9 @@ struct BestLights::State {
   Atoms lights;  // as points
   LightPowers powers;
   LightExchange exchange;
+  PersistentTree tree;
+  bool grown = false;  // the tree
+  std::vector<int> moved;
   std::array<LightPowers::Dark, 3> dark;
   LightPowers::Dark luminance_dark;
   Rows power, potential, feedback, target;  // a light: its power, k with the map, k with the last error
@@ -154,6 +159,7 @@ struct BestLights::State {
     luminance_dark = powers.no_dark();
     placed = true;
     has_error = false;
+    grown = false;
   }
 
   // The last error, in shares of this frame's luminance; light that went out takes its error with it.
@@ -263,12 +269,13 @@ struct BestLights::State {
     if (places.empty()) return;
     luminance_potential(atoms, atom_moments, place_rest);
     LightExchange::Options options;
-    options.most = kMostEx > 0 ? kMostEx : std::max(2, count / 4);
+    options.most = std::max(2, count / 4);
     options.hysteresis = kHysteresis;
     options.threshold = kThreshold;
     options.least_distance = 0.1 / std::sqrt(count);
     const auto pairs = exchange.choose(directions, luminance_power, places, place_rest, options);
     for (const auto& [light, place] : pairs) {
+      moved.push_back(light);
       set_light(light, places[static_cast<std::size_t>(place)]);
       powers.move(light, directions);
       potentials_at(atoms, atom_moments, light, light + 1, potential);
@@ -326,17 +333,23 @@ struct BestLights::State {
   }
 
   void write_out() {
-    for (int i = 0; i < count; ++i) {
-      const auto k = static_cast<std::size_t>(i);
+    to_luminance(power, luminance_power, count);
+    const PersistentTree::Lights now{directions, luminance_power, powers.matrix(), powers.stride()};
+    if (grown)
+      tree.follow(now, moved);
+    else
+      tree.build(now);
+    grown = true;
+    const auto entries = tree.order();
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      const auto i = static_cast<std::size_t>(entries[k].light);
       DirectionalLight& light = out[k];
-      light.direction = directions[k].cast<float>();
-      light.direction.normalize();
+      light.direction = directions[i].cast<float>().normalized();
       for (std::size_t c = 0; c < 3; ++c)
-        light.illuminance[static_cast<Eigen::Index>(c)] = static_cast<float>(power[c][k] * atoms.scale);
-      light.id = ids[k];
-      light.parent = -1;
+        light.illuminance[static_cast<Eigen::Index>(c)] = static_cast<float>(power[c][i] * atoms.scale);
+      light.id = ids[i];
+      light.parent = entries[k].parent;
     }
-    out = progressive_order(out);
   }
 
   // Of the map of the last frame: exchanges until none pays, then all lights down to the nearest places of least cost.
@@ -349,6 +362,7 @@ struct BestLights::State {
       }
       if (round + 1 < kImprovements) place_at(descend_lights(atoms, directions, grid.theta_max_rad, kSteps));
     }
+    grown = false;
     solve_powers();
     keep_error();
     write_out();
@@ -357,12 +371,14 @@ struct BestLights::State {
   void place_at(const std::vector<Vec3d>& found) {
     for (int i = 0; i < count; ++i) set_light(i, found[static_cast<std::size_t>(i)]);
     powers.place(directions);
+    grown = false;
     potentials_at(atoms, atom_moments, 0, count, potential);
   }
 
   void process(const PolarMap& map) {
     maker.make(map, atoms);
     report = {};
+    moved.clear();
     if (!(atoms.scale > 0)) {
       for (DirectionalLight& light : out) light.illuminance = Rgb::Zero();
       has_error = false;

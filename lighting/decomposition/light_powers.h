@@ -34,6 +34,7 @@ class LightPowers {
 
   // G · w without the ridge: the lights' own part of b.
   void potential(std::span<const double> w, std::span<double> out) const noexcept;
+  [[nodiscard]] const double* matrix() const { return matrix_.data(); }    // stride × stride
   [[nodiscard]] const double* inverse() const { return inverse_.data(); }  // stride × stride
   [[nodiscard]] double inverse_diagonal(int i) const { return inverse_[at(i, i)]; }
   void multiply_by_inverse(std::span<const double> b, std::span<double> out) const noexcept;
