@@ -86,6 +86,12 @@ AtomMaker::AtomMaker(const PolarGrid& grid, int lights)
     sine_.push_back(static_cast<float>(std::sin(lambda)));
     cosine_.push_back(static_cast<float>(std::cos(lambda)));
   }
+  for (int ring = 0; ring < grid.rings; ++ring) {
+    const double theta = grid.theta_max_rad * (ring + 0.5) / grid.rings;
+    ring_sine_.push_back(std::sin(theta));
+    ring_cosine_.push_back(std::cos(theta));
+    bin_solid_angle_sr_.push_back(grid.bin_solid_angle_sr(ring));
+  }
   for (auto& sum : sums_) sum.resize(sine_.size());
   cells_.resize(static_cast<std::size_t>(2 * rows * kColumns));
   // At the most every cell divided once, and the rest of the room for what is divided again.
@@ -101,10 +107,10 @@ void AtomMaker::sum_cells(const PolarMap& map) noexcept {
     for (auto& sum : sums_) std::fill(sum.begin(), sum.end(), 0.0f);
     for (int ring = rows_[row]; ring < rows_[row + 1]; ++ring) {
       const std::size_t at = static_cast<std::size_t>(ring) * sectors;
-      const double theta = grid_.theta_max_rad * (ring + 0.5) / grid_.rings;
       kernel.add_ring({map.plane(0).data() + at, map.plane(last / 2).data() + at, map.plane(last).data() + at,
                        map.solid_angle_sr.data() + at},
-                      grid_.sectors, static_cast<float>(std::sin(theta)), static_cast<float>(std::cos(theta)),
+                      grid_.sectors, static_cast<float>(ring_sine_[static_cast<std::size_t>(ring)]),
+                      static_cast<float>(ring_cosine_[static_cast<std::size_t>(ring)]),
                       {sums_[0].data(), sums_[1].data(), sums_[2].data(), sums_[3].data(), sums_[4].data()});
     }
     for (int column = 0; column < kColumns; ++column) {
@@ -128,8 +134,8 @@ void AtomMaker::sum_cells(const PolarMap& map) noexcept {
 AtomMaker::Cell AtomMaker::sum_bins(const PolarMap& map, const Block& block) const noexcept {
   Cell sum{};
   for (int ring = block.ring0; ring < block.ring1; ++ring) {
-    const double theta = grid_.theta_max_rad * (ring + 0.5) / grid_.rings;
-    const double sin_theta = std::sin(theta), cos_theta = std::cos(theta);
+    const double sin_theta = ring_sine_[static_cast<std::size_t>(ring)];
+    const double cos_theta = ring_cosine_[static_cast<std::size_t>(ring)];
     for (int sector = block.sector0; sector < block.sector1; ++sector) {
       const auto s = static_cast<std::size_t>(sector);
       const std::size_t bin = static_cast<std::size_t>(ring) * static_cast<std::size_t>(grid_.sectors) + s;
@@ -150,7 +156,8 @@ AtomMaker::Cell AtomMaker::sum_bins(const PolarMap& map, const Block& block) con
 
 double AtomMaker::solid_angle(const Block& block) const noexcept {
   double sum = 0;
-  for (int ring = block.ring0; ring < block.ring1; ++ring) sum += grid_.bin_solid_angle_sr(ring);
+  for (int ring = block.ring0; ring < block.ring1; ++ring)
+    sum += bin_solid_angle_sr_[static_cast<std::size_t>(ring)];
   return sum * (block.sector1 - block.sector0);
 }
 

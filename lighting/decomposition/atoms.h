@@ -64,11 +64,12 @@ class AtomMaker {
   PolarGrid grid_;
   double coarse_share_, fine_share_;
   int capacity_;
-  std::vector<int> rows_;                   // ring edges of the cells' rows, an even number of rows
-  std::vector<int> columns_;                // sector edges of the cells' columns
-  std::vector<float> sine_, cosine_;        // of the sectors' azimuths
-  std::array<std::vector<float>, 5> sums_;  // over a row's rings
-  std::vector<Cell> cells_;                 // [rows][columns]
+  std::vector<int> rows_;     // ring edges of the cells' rows, an even number of rows
+  std::vector<int> columns_;  // sector edges of the cells' columns
+  std::vector<double> ring_sine_, ring_cosine_, bin_solid_angle_sr_;  // of the rings
+  std::vector<float> sine_, cosine_;                                  // of the sectors' azimuths
+  std::array<std::vector<float>, 5> sums_;                            // over a row's rings
+  std::vector<Cell> cells_;                                           // [rows][columns]
 };
 
 // At most `count` atoms that stand for all of them: the brightest group is divided in two at its luminance's median,

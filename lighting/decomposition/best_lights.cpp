@@ -20,13 +20,14 @@ constexpr double kMostFeedback = 0.9;
 constexpr double kHysteresis = 0.5;  // a light leaves for what is worth half as much again
 constexpr double kThreshold = 1e-5;
 
+constexpr int kAllAtomsUpTo = 128;  // lights
+
 // A place nearer to a light than this is that light's.
 constexpr float kLeastDistance = 0.0035f;  // 0.2°
 
-int kImprovements = getenv("IM") ? atoi(getenv("IM")) : 3, kPasses = getenv("PA") ? atoi(getenv("PA")) : 4,
-    kSteps = getenv("ST") ? atoi(getenv("ST")) : 30;
+constexpr int kImprovements = 5, kPasses = 4, kSteps = 50;
 int candidates_for(int count) {
-  return std::clamp(count + count / 2, 16, 96);
+  return count <= 128 ? std::clamp(count, 16, 64) : 32;
 }
 
 using Rows = std::array<std::vector<double>, 3>;
@@ -79,6 +80,8 @@ struct BestLights::State {
   MomentMatrix atom_moments, error_moments;
   bool placed = false;
   bool has_error = false;
+  bool second_half = false;  // of the atoms is looked through next
+  bool settling = false;     // one map until nothing pays any more
 
   std::vector<Vec3d> directions;
   std::vector<MomentVector> moments;  // of the lights
@@ -195,10 +198,21 @@ struct BestLights::State {
 
   // Of every light and quadrant around it the atom that is served worst; the worst of these.
   void find_places() {
-    placement_kernel::kernels().nearest(atoms.points(), light_points(), nearest.data(), distance.data());
+    // Many lights: half of the atoms one frame, the others the next.
+    const bool by_halves = count > kAllAtomsUpTo && !settling;
+    const int middle = atoms.padded() / 2 / placement_kernel::kLanes * placement_kernel::kLanes;
+    const int begin = by_halves && second_half ? middle : 0;
+    const int end = by_halves && !second_half ? middle : atoms.padded();
+    second_half = !second_half;
+    auto points = atoms.points();
+    points.x += begin, points.y += begin, points.z += begin, points.s += begin;
+    points.count = end - begin;
+    placement_kernel::kernels().nearest(points, light_points(), nearest.data() + begin,
+                                        distance.data() + begin);
     std::fill(quadrant_score.begin(), quadrant_score.end(), 0.0f);
     std::fill(quadrant_atom.begin(), quadrant_atom.end(), -1);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(atoms.count); ++k) {
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(std::min(end, atoms.count));
+         ++k) {
       const auto i = static_cast<std::size_t>(nearest[k]);
       const float dx = atoms.x[k] - lights.x[i], dz = atoms.z[k] - lights.z[i];
       const float along = lights.z[i] * dx - lights.x[i] * dz;
@@ -269,7 +283,7 @@ struct BestLights::State {
     if (places.empty()) return;
     luminance_potential(atoms, atom_moments, place_rest);
     LightExchange::Options options;
-    options.most = std::max(2, count / 4);
+    options.most = std::clamp(2048 / count, 2, std::max(2, count / 4));
     options.hysteresis = kHysteresis;
     options.threshold = kThreshold;
     options.least_distance = 0.1 / std::sqrt(count);
@@ -354,6 +368,7 @@ struct BestLights::State {
 
   // Of the map of the last frame: exchanges until none pays, then all lights down to the nearest places of least cost.
   void improve() {
+    settling = true;
     for (int round = 0; round < kImprovements && atoms.count > count; ++round) {
       for (int pass = 0; pass < kPasses; ++pass) {
         has_error = false;
@@ -362,6 +377,7 @@ struct BestLights::State {
       }
       if (round + 1 < kImprovements) place_at(descend_lights(atoms, directions, grid.theta_max_rad, kSteps));
     }
+    settling = false;
     grown = false;
     solve_powers();
     keep_error();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lightwell {
 namespace {
@@ -17,7 +18,7 @@ LightExchange::LightExchange(int lights, int most_places)
   const auto n = static_cast<std::size_t>(stride_);
   const auto m = static_cast<std::size_t>(most_places);
   inverse_.assign(n * n, 0);
-  for (auto* v : {&worth_, &w_, &column_}) v->assign(n, 0);
+  for (auto* v : {&worth_, &w_, &column_, &step_, &inverse_pivot_, &price_}) v->assign(n, 0);
   for (auto* v : {&kernel_, &by_inverse_}) v->assign(n * m, 0);
   for (auto* v : {&residual_, &complement_, &of_places_}) v->assign(m, 0);
   lit_.assign(n, 0);
@@ -109,6 +110,20 @@ void LightExchange::insert(int c, int i, std::span<const Vec3d> places) noexcept
   fresh_[k] = 1;
 }
 
+// Lights that just came stay: nothing pays their price.
+void LightExchange::price_lights(double hysteresis) noexcept {
+  for (int i = 0; i < stride_; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double pivot = inverse_[k * static_cast<std::size_t>(stride_) + k];
+    const bool lit = lit_[k] && pivot > 0;
+    step_[k] = lit ? w_[k] / pivot : 0;
+    inverse_pivot_[k] = lit ? 1 / pivot : 0;
+    price_[k] = i >= size_ || fresh_[k] ? std::numeric_limits<double>::infinity()
+                : lit                   ? (1 + hysteresis) * w_[k] * step_[k]
+                                        : 0;
+  }
+}
+
 std::span<const LightExchange::Pair> LightExchange::choose(std::span<const Vec3d> lights,
                                                            std::span<const double> w,
                                                            std::span<const Vec3d> places,
@@ -141,28 +156,15 @@ std::span<const LightExchange::Pair> LightExchange::choose(std::span<const Vec3d
   }
   const double least = options.threshold * all_worth_ + 1e-14;
   while (static_cast<int>(pairs_.size()) < options.most) {
+    price_lights(options.hysteresis);
     double best = least;
     Pair pair{-1, -1};
-    for (int i = 0; i < size_; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      if (fresh_[k]) continue;
-      const double pivot = inverse_[k * stride + k];
-      const bool lit = lit_[k] && pivot > 0;
-      const double t = lit ? w_[k] / pivot : 0;
-      const double worth = lit ? w_[k] * t : 0;
-      for (int c = 0; c < places_; ++c) {
-        const auto p = static_cast<std::size_t>(c);
-        if (taken_[p]) continue;
-        const double h = lit ? by_inverse_[p * stride + k] : 0;
-        const double r = residual_[p] + h * t;
-        if (r <= 0) continue;
-        const double net =
-            r * r / (complement_[p] + (lit ? h * h / pivot : 0)) - (1 + options.hysteresis) * worth;
-        if (net > best) {
-          best = net;
-          pair = {i, c};
-        }
-      }
+    for (int c = 0; c < places_; ++c) {
+      const auto p = static_cast<std::size_t>(c);
+      if (taken_[p]) continue;
+      const int i = kernel.best_to_leave(&by_inverse_[p * stride], step_.data(), inverse_pivot_.data(),
+                                         price_.data(), stride_, residual_[p], complement_[p], &best);
+      if (i >= 0) pair = {i, c};
     }
     if (pair.light < 0) break;
     remove(pair.light);

@@ -37,6 +37,7 @@ class LightExchange {
                                const Options& options) noexcept;
 
  private:
+  void price_lights(double hysteresis) noexcept;
   void remove(int i) noexcept;
   void insert(int c, int i, std::span<const Vec3d> places) noexcept;
 
@@ -48,6 +49,7 @@ class LightExchange {
   std::vector<double> kernel_, by_inverse_;    // [places][stride]: k(place, light), and times the inverse
   std::vector<double> residual_, complement_;  // a place
   std::vector<double> w_, column_, of_places_;
+  std::vector<double> step_, inverse_pivot_, price_;  // a light: what its going changes
   std::vector<char> lit_, fresh_, taken_;
   std::vector<Pair> pairs_;
 };

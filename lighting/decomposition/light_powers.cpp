@@ -138,7 +138,6 @@ bool LightPowers::solve_for_multipliers(std::span<const double> y, const std::ve
 void LightPowers::solve(std::span<const double> b, Dark& dark, std::span<double> w) noexcept {
   const auto& kernel = placement_kernel::kernels();
   kernel.multiply(inverse_.data(), size_, stride_, b.data(), unconstrained_.data());
-  correct(b, unconstrained_, -1);
   double largest = 0;
   for (int i = 0; i < size_; ++i)
     largest = std::max(largest, std::abs(unconstrained_[static_cast<std::size_t>(i)]));

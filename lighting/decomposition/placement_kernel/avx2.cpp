@@ -11,8 +11,8 @@
 namespace lightwell::placement_kernel {
 
 extern const Kernels kAvx2Kernels;
-const Kernels kAvx2Kernels = {add_ring,    potentials, potential, gradient,     nearest,
-                              add_moments, multiply,   add_outer, multiply_rows};
+const Kernels kAvx2Kernels = {add_ring,    potentials, potential, gradient,      nearest,
+                              add_moments, multiply,   add_outer, best_to_leave, multiply_rows};
 
 }  // namespace lightwell::placement_kernel
 #endif

@@ -50,6 +50,10 @@ struct Kernels {
   void (*multiply)(const double* matrix, int rows, int stride, const double* in, double* out);
   // matrix += factor · a · bᵀ
   void (*add_outer)(double* matrix, int rows, int stride, double factor, const double* a, const double* b);
+  // The light whose going pays most for place c: over i the most of (residual + h t)² / (complement + h² inverse_pivot) −
+  // price, h = by_inverse[i], where residual + h t > 0. −1: none above `least`, which comes to be the most.
+  int (*best_to_leave)(const double* by_inverse, const double* t, const double* inverse_pivot,
+                       const double* price, int stride, double residual, double complement, double* least);
   // out = left · symmetric; left: rows × stride, symmetric: stride × stride
   void (*multiply_rows)(const double* left, int rows, const double* symmetric, int stride, double* out);
 };

@@ -303,6 +303,32 @@ void add_outer(double* matrix, int rows, int stride, double factor, const double
   }
 }
 
+int best_to_leave(const double* by_inverse, const double* t, const double* inverse_pivot, const double* price, int stride,
+                  double residual, double complement, double* least) {
+  using Longs = long long __attribute__((vector_size(32)));
+  Doubles most = Doubles{} + *least;
+  Longs which = Longs{} - 1;
+  for (int i = 0; i < stride; i += 4) {
+    Doubles h, step, inverse, cost;
+    load(h, by_inverse + i);
+    load(step, t + i);
+    load(inverse, inverse_pivot + i);
+    load(cost, price + i);
+    const Doubles r = h * step + residual;
+    const Doubles net = r * r / (h * h * inverse + complement) - cost;
+    const Longs better = (net > most) & (r > 0.0);
+    most = better ? net : most;
+    which = better ? Longs{i, i + 1, i + 2, i + 3} : which;
+  }
+  int best = -1;
+  for (int lane = 0; lane < 4; ++lane)
+    if (which[lane] >= 0 && (most[lane] > *least || (most[lane] == *least && which[lane] < best))) {
+      *least = most[lane];
+      best = static_cast<int>(which[lane]);
+    }
+  return best;
+}
+
 // Four rows by eight columns at a time stay in registers.
 void multiply_rows(const double* left, int rows, const double* symmetric, int stride, double* out) {
   for (int row = 0; row < rows; row += 4) {

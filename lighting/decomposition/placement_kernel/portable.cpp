@@ -7,7 +7,7 @@
 
 namespace lightwell::placement_kernel {
 
-const Kernels kPortableKernels = {add_ring,    potentials, potential, gradient,     nearest,
-                                  add_moments, multiply,   add_outer, multiply_rows};
+const Kernels kPortableKernels = {add_ring,    potentials, potential, gradient,      nearest,
+                                  add_moments, multiply,   add_outer, best_to_leave, multiply_rows};
 
 }  // namespace lightwell::placement_kernel
