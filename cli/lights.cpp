@@ -19,6 +19,7 @@
 #include "interface/option_range.h"
 #include "interface/printable.h"
 #include "interface/same_file.h"
+#include "lighting/decomposition/best_lights.h"
 #include "lighting/decomposition/decompose.h"
 #include "lighting/lat_long_image.h"
 #include "lighting/temporal/flicker_filter.h"
@@ -131,6 +132,7 @@ class Decomposer {
 
   Result<LightSet> next(const PolarMap& map) {
     const auto sampler = sampler_of(plan_.method);
+    if (plan_.temporal == TemporalChoice::best && plan_.count <= kMostPlacedLights) return next_best(map);
     if (plan_.temporal == TemporalChoice::none || !sampler)
       return decompose(map, plan_.method, plan_.count, plan_.decompose);
     if (!pipeline_)
@@ -146,6 +148,20 @@ class Decomposer {
   [[nodiscard]] double delay_frames() const { return filter_ ? filter_->delay_frames() : 0; }
 
  private:
+  Result<LightSet> next_best(const PolarMap& map) {
+    if (!best_) best_.emplace(map.grid, plan_.count, Effort::thorough);
+    const auto lights = best_->process(map);
+    LightSet set;
+    set.method = name(Method::best);
+    set.coverage = coverage_of(map.grid);
+    set.lights.assign(lights.begin(), lights.end());
+    set.has_parents = true;
+    set.total_illuminance = best_->total_illuminance().cast<float>();
+    if (!set.total_illuminance.isFinite().all())
+      return Error{ErrorKind::bad_input, "total illuminance is beyond a 32 bit float (3.4e38 lux)"};
+    return set;
+  }
+
   Status prepare(const PolarMap& map, LightPipelineOptions::Sampler sampler) {
     const auto taps = temporal_taps(plan_.temporal, plan_.rate_hz);
     if (!taps) return taps.error();
@@ -164,6 +180,7 @@ class Decomposer {
   }
 
   Plan plan_;
+  std::optional<BestLights> best_;
   std::optional<LightPipeline> pipeline_;
   std::optional<LightSetFilter> filter_;
 };

@@ -50,9 +50,11 @@ FramePathOptions frame_path_options(const Configuration& configuration) {
   options.radiometer.grid.rings = configuration.map.rings;
   options.radiometer.grid.sectors = configuration.map.sectors;
   options.method = given.sampler;
-  options.lights.count = given.count;
   options.lights.sampler = given.sampler == "standard" ? LightPipelineOptions::Sampler::standard
-                                                       : LightPipelineOptions::Sampler::havran;
+                           : given.sampler == "havran" ? LightPipelineOptions::Sampler::havran
+                                                       : LightPipelineOptions::Sampler::best;
+  const int usual = options.lights.sampler == LightPipelineOptions::Sampler::best ? 64 : 300;
+  options.lights.count = given.count > 0 ? given.count : usual;
   options.lights.relaxed = given.relaxed;
   options.lights.seed = static_cast<std::uint32_t>(given.seed);
   options.lights.filter = given.filter == "none" ? TemporalFilter::none : TemporalFilter::fir;

@@ -14,6 +14,7 @@
 
 #include "interface/atomic_file.h"
 #include "interface/dds_domain.h"
+#include "lighting/decomposition/best_lights.h"
 #include "lighting/fit/few_lights.h"
 
 namespace lightwell {
@@ -115,8 +116,10 @@ const std::vector<Key>& keys() {
            &C::calibration, &C::CalibrationFiles::directory),
       integer("map.rings", "zenith angle steps of the radiance map", &C::map, &C::Map::rings, 1, 2048),
       integer("map.sectors", "azimuth steps of the radiance map", &C::map, &C::Map::sectors, 1, 8192),
-      integer("lights.count", "lights sampled a frame", &C::lights, &C::Lights::count, 1, 100000),
-      text("lights.sampler", "inverse transform", &C::lights, &C::Lights::sampler, {"havran", "standard"}),
+      integer("lights.count", "lights a frame, 0: 64 of best, 300 of the others", &C::lights,
+              &C::Lights::count, 0, 100000),
+      text("lights.sampler", "best is steady by itself; what follows is for the others", &C::lights,
+           &C::Lights::sampler, {"best", "havran", "standard"}),
       boolean("lights.relaxed", "blue-noise relaxation of the sample points", &C::lights,
               &C::Lights::relaxed),
       Key{"lights.seed", "rotates the sample points, 0: not", "0 to 4294967295",
@@ -276,6 +279,10 @@ Status check_together(const Configuration& c) {
   if (l.pass_hz > 0 && l.pass_hz >= l.stop_hz)
     return Error{ErrorKind::usage, fmt::format("lights.pass_hz = {:g}; allowed: below lights.stop_hz = {:g}",
                                                l.pass_hz, l.stop_hz)};
+  if (l.sampler == "best" && l.count > kMostPlacedLights)
+    return Error{ErrorKind::usage,
+                 fmt::format("lights.count = {}; allowed with lights.sampler = \"best\": 0 to {}", l.count,
+                             kMostPlacedLights)};
   return {};
 }
 

@@ -44,8 +44,8 @@ struct Configuration {
     bool operator==(const Map&) const = default;
   } map;
   struct Lights {
-    int count = 300;
-    std::string sampler = "havran";
+    int count = 0;
+    std::string sampler = "best";
     bool relaxed = true;
     std::int64_t seed = 0;
     std::string filter = "fir";

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lighting/decomposition/best_lights.h"
 #include "lighting/decomposition/clustering.h"
 #include "lighting/sampling/azimuth_seam.h"
 #include "lighting/sampling/halton.h"
@@ -38,12 +39,15 @@ Status check(const PolarGrid& grid, int channels, const LightPipelineOptions& op
   if (channels != 1 && channels != 3) return out_of_range("channels", channels, "1 or 3");
   if (options.count < 1 || options.count > kMostLights)
     return out_of_range("count", options.count, "1 to 100000");
+  if (options.sampler == LightPipelineOptions::Sampler::best && options.count > kMostPlacedLights)
+    return out_of_range("count", options.count, "1 to " + std::to_string(kMostPlacedLights) + " with best");
   if (options.clusters < 0 || options.clusters > kMostLights)
     return out_of_range("clusters", options.clusters, "0 (none) to 100000");
   return {};
 }
 
 std::vector<RingCoordinates> light_points(const LightPipelineOptions& options) {
+  if (options.sampler == LightPipelineOptions::Sampler::best) return {};
   std::vector<Vec2d> square = halton_points(static_cast<std::size_t>(options.count), options.seed);
   if (options.relaxed) relax_on_torus(square);
   return options.sampler == LightPipelineOptions::Sampler::havran ? warp_points<HavranTransform>(square)
@@ -61,7 +65,10 @@ struct LightPipeline::State {
         seam(grid),
         sampled(points.size()),
         lights(points.size()) {
-    if (o.clusters > 0) clustering.emplace(o.clusters, grid.theta_max_rad);
+    if (o.sampler == LightPipelineOptions::Sampler::best)
+      best.emplace(grid, o.count);
+    else if (o.clusters > 0)
+      clustering.emplace(o.clusters, grid.theta_max_rad);
   }
 
   void sample(const PolarMap& map) noexcept {
@@ -88,18 +95,20 @@ struct LightPipeline::State {
   RingDistribution distribution;
   AzimuthSeam seam;
   LightArrays sampled;
+  std::optional<BestLights> best;
   std::optional<LightFilter> filter;
   LightArrays filtered;  // empty without a filter
   std::optional<Clustering> clustering;
   std::vector<DirectionalLight> lights;
   Rgb total = Rgb::Zero();
+  Rgb map_total = Rgb::Zero();
 };
 
 Result<LightPipeline> LightPipeline::create(const PolarGrid& grid, int channels,
                                             const LightPipelineOptions& options) {
   if (Status status = check(grid, channels, options); !status) return status.error();
   std::optional<FirDesign> design;
-  if (options.filter == TemporalFilter::fir) {
+  if (options.filter == TemporalFilter::fir && options.sampler != LightPipelineOptions::Sampler::best) {
     Result<FirDesign> made =
         design_fir({options.rate_hz, options.pass_hz, options.stop_hz, options.filter_order});
     if (!made) return made.error();
@@ -121,6 +130,11 @@ LightPipeline::~LightPipeline() = default;
 std::span<const DirectionalLight> LightPipeline::process(const PolarMap& map) noexcept {
   State& s = *state_;
   verify_bug(map.channels == s.channels, "the map has other channels than the pipeline");
+  if (s.best) {
+    const std::span<const DirectionalLight> best = s.best->process(map);
+    s.total = s.map_total = s.best->total_illuminance().cast<float>();
+    return best;
+  }
   s.sample(map);
   if (s.filter) s.filter->apply(s.sampled, s.filtered);
   const LightArrays& lights = s.filter ? s.filtered : s.sampled;
@@ -129,6 +143,7 @@ std::span<const DirectionalLight> LightPipeline::process(const PolarMap& map) no
   Rgbd total = Rgbd::Zero();
   for (const DirectionalLight& light : out) total += light.illuminance.cast<double>();
   s.total = total.cast<float>();
+  s.map_total = s.distribution.total_illuminance().cast<float>();
   return out;
 }
 
@@ -139,7 +154,7 @@ Rgb LightPipeline::total_illuminance() const noexcept {
   return state_->total;
 }
 Rgb LightPipeline::map_illuminance() const noexcept {
-  return state_->distribution.total_illuminance().cast<float>();
+  return state_->map_total;
 }
 double LightPipeline::delay_frames() const noexcept {
   return state_->filter ? state_->filter->delay_frames() : 0;
@@ -147,6 +162,7 @@ double LightPipeline::delay_frames() const noexcept {
 
 void LightPipeline::reset() noexcept {
   state_->seam.reset();
+  if (state_->best) state_->best->reset();
   if (state_->filter) state_->filter->reset();
 }
 

@@ -16,8 +16,10 @@ namespace lightwell {
 enum class TemporalFilter { none, fir };
 
 struct LightPipelineOptions {
-  int count = 300;  // lights sampled a frame, 1 to 100,000
-  enum class Sampler { standard, havran } sampler = Sampler::havran;
+  int count = 300;  // lights a frame, 1 to 100,000; best: to kMostPlacedLights
+  // best: the project's own (lighting/decomposition/best_lights.h), steady by itself and a tree: of what follows here
+  // nothing applies to it
+  enum class Sampler { standard, havran, best } sampler = Sampler::havran;
   bool relaxed = true;     // Lloyd relaxation of the Halton points, once (section 3.2)
   std::uint32_t seed = 0;  // Cranley–Patterson rotation of the sequence; 0: none
   TemporalFilter filter = TemporalFilter::fir;
@@ -28,9 +30,9 @@ struct LightPipelineOptions {
   int clusters = 72;        // Q, bound on the lights after clustering; 0: no clustering
 };
 
-// Map to published lights: sample → temporal filter → cluster (Havran et al. 2005, sections 3 and 4.3).
-// Keeps the state between frames. process allocates nothing and never fails: a black map gives lights of no
-// power.
+// Map to published lights: the project's own, or sample → temporal filter → cluster (Havran et al. 2005, sections 3
+// and 4.3). Keeps the state between frames. After the first frame process allocates nothing, and it never fails: a
+// black map gives lights of no power.
 class LightPipeline {
  public:
   static Result<LightPipeline> create(const PolarGrid& grid, int channels,

@@ -8,6 +8,7 @@
 
 #include "interface/environment_io.h"
 #include "interface/printable.h"
+#include "lighting/decomposition/best_lights.h"
 
 namespace lightwell::render {
 namespace {
@@ -27,7 +28,7 @@ class EnvironmentLights final : public LightSource {
     const double turn_rad = std::remainder(frame * options_.spin_deg, 360.0) * kPi / 180;
     if (made_ && turn_rad == turn_rad_) return false;
     const PolarMap map = polar_map_from_lat_long(image_, options_.coverage == Coverage::hemisphere, turn_rad);
-    const auto set = decompose(map, options_.method, options_.lights);
+    const auto set = lights_of(map);
     if (!set) return Error{set.error().kind, options_.file.string() + ": " + set.error().message};
     lights_ =
         options_.max_lights > 0 ? take_lights(*set, static_cast<std::size_t>(options_.max_lights)) : *set;
@@ -40,8 +41,24 @@ class EnvironmentLights final : public LightSource {
   [[nodiscard]] int environment_version() const override { return 1; }
 
  private:
+  // A map that spins is followed as a live one is.
+  Result<LightSet> lights_of(const PolarMap& map) {
+    if (options_.method != Method::best || options_.spin_deg == 0 || options_.lights > kMostPlacedLights)
+      return decompose(map, options_.method, options_.lights);
+    if (!best_) best_.emplace(map.grid, options_.lights, Effort::thorough);
+    const auto lights = best_->process(map);
+    LightSet set;
+    set.method = name(Method::best);
+    set.coverage = options_.coverage;
+    set.total_illuminance = best_->total_illuminance().cast<float>();
+    set.lights.assign(lights.begin(), lights.end());
+    set.has_parents = true;
+    return set;
+  }
+
   EnvironmentOptions options_;
   LatLongImage image_;
+  std::optional<BestLights> best_;
   double turn_rad_ = 0;
   bool made_ = false;
 };

@@ -51,6 +51,11 @@ std::array<const float*, 3> Atoms::weights() const {
   return {weight[0].data(), weight[1].data(), weight[2].data()};
 }
 
+Rgbd Atoms::weight_of(int k) const {
+  const auto i = static_cast<std::size_t>(k);
+  return Rgb(weight[0][i], weight[1][i], weight[2][i]).cast<double>();
+}
+
 Vec3d Atoms::direction(int k) const {
   const auto i = static_cast<std::size_t>(k);
   return Vec3f(x[i], y[i], z[i]).cast<double>();

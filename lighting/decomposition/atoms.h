@@ -30,6 +30,7 @@ struct Atoms {
   [[nodiscard]] int padded() const;  // the places behind the last atom up to here have weight 0
   [[nodiscard]] placement_kernel::Points points() const;
   [[nodiscard]] std::array<const float*, 3> weights() const;
+  [[nodiscard]] Rgbd weight_of(int k) const;
   [[nodiscard]] Vec3d direction(int k) const;
   // count < capacity
   void add(const Vec3d& direction, const Rgbd& weight, double solid_angle_sr) noexcept;

@@ -32,6 +32,16 @@ int candidates_for(int count) {
 
 using Rows = std::array<std::vector<double>, 3>;
 
+// An atom with more of the map's light than this is summed in double: what a float's rounding takes from a sun of 99.99 %
+// would be more than all the light beside it.
+constexpr float kBrightShare = 0.01f;
+
+struct BrightAtom {
+  Vec3d direction;
+  Rgbd weight;
+  int atom;
+};
+
 }  // namespace
 
 struct BestLights::State {
@@ -60,6 +70,7 @@ struct BestLights::State {
     quadrant_score.assign(4 * static_cast<std::size_t>(n), 0);
     quadrant_atom.assign(4 * static_cast<std::size_t>(n), -1);
     order.reserve(4 * static_cast<std::size_t>(n));
+    bright.reserve(static_cast<std::size_t>(1 / kBrightShare) + 1);
     moved.reserve(static_cast<std::size_t>(n));
     places.reserve(static_cast<std::size_t>(candidates_for(n)));
     place_points = Atoms(candidates_for(n));
@@ -78,7 +89,9 @@ struct BestLights::State {
   Eigen::Array3d error_total = Eigen::Array3d::Zero();  // that frame's illuminance
   double error_scale = 0;
   MomentMatrix atom_moments, error_moments;
+  std::vector<BrightAtom> bright;  // their weights are not in the atoms while potentials are summed
   bool placed = false;
+  bool placed_exactly = false;  // a light an atom: there were no more atoms
   bool has_error = false;
   bool second_half = false;  // of the atoms is looked through next
   bool settling = false;     // one map until nothing pays any more
@@ -137,6 +150,35 @@ struct BestLights::State {
       add_moment_potential(moments[static_cast<std::size_t>(i)], of, static_cast<std::size_t>(i), to);
   }
 
+  // Bright atoms out of the floats' sums, and back into them.
+  void take_bright() {
+    bright.clear();
+    for (int k = 0; k < atoms.count; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      if (std::max({atoms.luminance[i], atoms.weight[0][i], atoms.weight[1][i], atoms.weight[2][i]}) <
+              kBrightShare ||
+          bright.size() == bright.capacity())
+        continue;
+      bright.push_back({atoms.direction(k), atoms.weight_of(k), k});
+      for (auto& plane : atoms.weight) plane[i] = 0;
+    }
+  }
+  void return_bright() {
+    for (const BrightAtom& b : bright)
+      for (std::size_t c = 0; c < 3; ++c)
+        atoms.weight[c][static_cast<std::size_t>(b.atom)] =
+            static_cast<float>(b.weight[static_cast<Eigen::Index>(c)]);
+  }
+  void map_potentials(int first, int last) {
+    potentials_at(atoms, atom_moments, first, last, potential);
+    for (int i = first; i < last; ++i)
+      for (const BrightAtom& b : bright) {
+        const double k = error_kernel(directions[static_cast<std::size_t>(i)], b.direction);
+        for (std::size_t c = 0; c < 3; ++c)
+          potential[c][static_cast<std::size_t>(i)] += k * b.weight[static_cast<Eigen::Index>(c)];
+      }
+  }
+
   static void sum_moments(const Atoms& of, MomentMatrix& to) {
     to.setZero();
     placement_kernel::kernels().add_moments(of.points(), of.weights().data(), to.data());
@@ -144,19 +186,11 @@ struct BestLights::State {
 
   void start() {
     lights.count = count;
-    if (atoms.count > count) {
-      const std::vector<Vec3d> found = place_lights(atoms, count, grid.theta_max_rad, effort);
-      for (int i = 0; i < count; ++i) set_light(i, found[static_cast<std::size_t>(i)]);
-    } else {
-      // The rest stands spread out, so that no two are one place.
-      for (int i = 0; i < count; ++i) {
-        const double share = (i + 0.5) / count;
-        const double y = 1 - share * (1 - std::cos(std::min(grid.theta_max_rad, kPi)));
-        set_light(i, i < atoms.count
-                         ? atoms.direction(i)
-                         : direction_from_spherical({std::acos(std::clamp(y, -1.0, 1.0)), 2.399963 * i}));
-      }
-    }
+    // place_lights works on whole atoms.
+    return_bright();
+    const std::vector<Vec3d> found = place_lights(atoms, count, grid.theta_max_rad, effort);
+    take_bright();
+    for (int i = 0; i < count; ++i) set_light(i, found[static_cast<std::size_t>(i)]);
     powers.place(directions);
     for (auto& d : dark) d = powers.no_dark();
     luminance_dark = powers.no_dark();
@@ -281,7 +315,7 @@ struct BestLights::State {
     report.exchanges = 0;
     find_places();
     if (places.empty()) return;
-    luminance_potential(atoms, atom_moments, place_rest);
+    luminance_potential(atoms, all_moments(), place_rest);
     LightExchange::Options options;
     options.most = std::clamp(2048 / count, 2, std::max(2, count / 4));
     options.hysteresis = kHysteresis;
@@ -292,7 +326,7 @@ struct BestLights::State {
       moved.push_back(light);
       set_light(light, places[static_cast<std::size_t>(place)]);
       powers.move(light, directions);
-      potentials_at(atoms, atom_moments, light, light + 1, potential);
+      map_potentials(light, light + 1);
       if (has_error) potentials_at(error, error_moments, light, light + 1, feedback);
     }
     report.exchanges = static_cast<int>(pairs.size());
@@ -318,7 +352,14 @@ struct BestLights::State {
     }
   }
 
+  [[nodiscard]] MomentMatrix all_moments() const {
+    MomentMatrix all = atom_moments;
+    for (const BrightAtom& b : bright) all += lambertian_moments(b.direction) * b.weight.matrix().transpose();
+    return all;
+  }
+
   void keep_error() {
+    return_bright();
     error.count = atoms.count;
     const auto copy = [&](const std::vector<float>& from, std::vector<float>& to, float sign) {
       for (std::size_t k = 0; k < static_cast<std::size_t>(atoms.count); ++k) to[k] = sign * from[k];
@@ -328,7 +369,7 @@ struct BestLights::State {
     copy(atoms.z, error.z, 1);
     copy(atoms.ground, error.ground, 1);
     for (std::size_t c = 0; c < 3; ++c) copy(atoms.weight[c], error.weight[c], -1);
-    error_moments = -atom_moments;
+    error_moments = -all_moments();
     for (int i = 0; i < count; ++i) {
       const auto k = static_cast<std::size_t>(i);
       const Rgbd w(power[0][k], power[1][k], power[2][k]);
@@ -369,7 +410,8 @@ struct BestLights::State {
   // Of the map of the last frame: exchanges until none pays, then all lights down to the nearest places of least cost.
   void improve() {
     settling = true;
-    for (int round = 0; round < kImprovements && atoms.count > count; ++round) {
+    take_bright();
+    for (int round = 0; round < kImprovements; ++round) {
       for (int pass = 0; pass < kPasses; ++pass) {
         has_error = false;
         exchange_lights();
@@ -377,6 +419,7 @@ struct BestLights::State {
       }
       if (round + 1 < kImprovements) place_at(descend_lights(atoms, directions, grid.theta_max_rad, kSteps));
     }
+    snap_to_bright();
     settling = false;
     grown = false;
     solve_powers();
@@ -384,11 +427,55 @@ struct BestLights::State {
     write_out();
   }
 
+  // A descent's last steps are long beside what a sun forgives: a light this near to a bright atom is meant for it.
+  void snap_to_bright() {
+    bool any = false;
+    for (const BrightAtom& b : bright) {
+      int nearest_light = 0;
+      for (int i = 1; i < count; ++i)
+        if ((directions[static_cast<std::size_t>(i)] - b.direction).squaredNorm() <
+            (directions[static_cast<std::size_t>(nearest_light)] - b.direction).squaredNorm())
+          nearest_light = i;
+      const double away = (directions[static_cast<std::size_t>(nearest_light)] - b.direction).norm();
+      const double reach =
+          luminance(b.weight) > 0.5 ? 0.0175 : static_cast<double>(kLeastDistance);  // 1°, 0.2°
+      if (away == 0 || away > reach) continue;
+      set_light(nearest_light, b.direction);
+      any = true;
+    }
+    if (!any) return;
+    powers.place(directions);
+    map_potentials(0, count);
+  }
+
   void place_at(const std::vector<Vec3d>& found) {
     for (int i = 0; i < count; ++i) set_light(i, found[static_cast<std::size_t>(i)]);
     powers.place(directions);
     grown = false;
-    potentials_at(atoms, atom_moments, 0, count, potential);
+    map_potentials(0, count);
+  }
+
+  // Atoms as they are, one light each.
+  void show_all_atoms() {
+    for (int i = 0; i < count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const bool lit = i < atoms.count;
+      const Vec3d d = lit ? atoms.direction(i) : atoms.direction(0);
+      if (!placed_exactly || directions[k] != d) set_light(i, d);
+      const Rgbd w = lit ? atoms.weight_of(i) : Rgbd::Zero();
+      for (std::size_t c = 0; c < 3; ++c) power[c][k] = w[static_cast<Eigen::Index>(c)];
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      double sum = 0;
+      for (int i = 0; i < count; ++i) sum += power[c][static_cast<std::size_t>(i)];
+      const double total = atoms.total[static_cast<Eigen::Index>(c)] / atoms.scale;
+      for (int i = 0; i < count && sum > 0; ++i) power[c][static_cast<std::size_t>(i)] *= total / sum;
+    }
+    placed_exactly = true;
+    placed = has_error = grown = false;
+    powers.place(directions);
+    write_out();
+    grown = false;
   }
 
   void process(const PolarMap& map) {
@@ -397,21 +484,43 @@ struct BestLights::State {
     moved.clear();
     if (!(atoms.scale > 0)) {
       for (DirectionalLight& light : out) light.illuminance = Rgb::Zero();
+      if (!placed && !placed_exactly) stand_dark();
       has_error = false;
       return;
     }
+    if (atoms.count <= count) {
+      show_all_atoms();
+      return;
+    }
+    placed_exactly = false;
+    take_bright();
     sum_moments(atoms, atom_moments);
     const bool first = !placed;
     if (first) start();
     if (has_error) scale_error();
-    potentials_at(atoms, atom_moments, 0, count, potential);
-    if (!first) {
+    map_potentials(0, count);
+    if (first)
+      snap_to_bright();
+    else
       exchange_lights();
-    }
     solve_powers();
     keep_error();
     write_out();
     if (first && effort == Effort::thorough) improve();
+  }
+
+  // Before any light: a tree of lights spread over the cap, all dark.
+  void stand_dark() {
+    const double reach = 1 - std::cos(std::min(grid.theta_max_rad, kPi));
+    for (int i = 0; i < count; ++i) {
+      const double y = 1 - (i + 0.5) / count * reach;
+      set_light(i, direction_from_spherical({std::acos(std::clamp(y, -1.0, 1.0)), 2.399963 * i}));
+    }
+    for (auto& row : power) std::fill(row.begin(), row.end(), 0.0);
+    powers.place(directions);
+    grown = false;
+    write_out();
+    grown = false;
   }
 };
 
@@ -429,6 +538,10 @@ std::span<const DirectionalLight> BestLights::process(const PolarMap& map) {
 void BestLights::reset() noexcept {
   state_->placed = false;
   state_->has_error = false;
+}
+
+Rgbd BestLights::total_illuminance() const noexcept {
+  return state_->atoms.total;
 }
 
 BestLights::Report BestLights::report() const noexcept {

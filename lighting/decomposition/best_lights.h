@@ -35,6 +35,8 @@ class BestLights {
   // map: of the grid given. Progressive, with parents; a light keeps its id while it keeps its place. The lights stay
   // valid until the next call.
   std::span<const DirectionalLight> process(const PolarMap& map);
+  // The last map's: what its lights sum to.
+  [[nodiscard]] Rgbd total_illuminance() const noexcept;
   // Forgets all frames.
   void reset() noexcept;
 
