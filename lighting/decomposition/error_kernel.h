@@ -25,7 +25,7 @@ inline constexpr double kPlainShare = 0.2;
 inline constexpr double kGroundShare = 0.8;
 inline constexpr double kSoftening_rad = 0.1 * kPi / 180;
 inline constexpr double kIrradianceWeight = 8;
-inline constexpr double kRidge = 1e-6;  // added where a = b: two lights in one place share their power
+inline constexpr double kRidge = 1e-8;  // added where a = b: two lights in one place share their power
 
 using MomentVector = Eigen::Matrix<double, placement_kernel::kMoments, 1>;
 using MomentMatrix = Eigen::Matrix<double, placement_kernel::kMoments, 3, Eigen::RowMajor>;

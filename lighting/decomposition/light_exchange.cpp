@@ -9,7 +9,7 @@
 namespace lightwell {
 namespace {
 
-constexpr double kLeastComplement = 1e-6;  // the ridge: a place where a light stands
+constexpr double kLeastComplement = 1e-6;  // of a place where a light stands only the ridge is left
 
 }  // namespace
 

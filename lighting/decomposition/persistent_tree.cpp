@@ -247,6 +247,12 @@ void PersistentTree::reattach(int light) noexcept {
   node(best).parent = node(light).parent = group;
 }
 
+// What cancels in costs, and says nothing.
+double PersistentTree::rounding() const noexcept {
+  const double all = node(root_).power;
+  return 1e-12 * all * all;
+}
+
 // Of (a, (c, d)) the part (a, c) or (a, d) is made instead of (c, d) where it costs far less. Some groups a frame.
 void PersistentTree::regroup() noexcept {
   for (std::size_t k = 0; k < std::min(kRegroupedAFrame, order_.size()); ++k) {
@@ -256,7 +262,7 @@ void PersistentTree::regroup() noexcept {
       const int b = node(n).child[1 - side];
       if (is_light(b)) continue;
       Node& inner = node(b);
-      double least = kRegroupBelow * inner.cost;
+      double least = kRegroupBelow * inner.cost - rounding();
       int stays = -1;
       for (int part = 0; part < 2; ++part) {  // inner.child[part] goes with a, the other stays outside
         const Node& goes = node(inner.child[part]);
@@ -312,7 +318,7 @@ void PersistentTree::rank() noexcept {
   for (std::size_t first = 1; first < order_.size(); ++first)
     for (std::size_t k = first; k > 0; --k) {
       if (nodes_[static_cast<std::size_t>(order_[k])].parent == order_[k - 1]) break;
-      if (!(urgency(k) > kUrgent * urgency(k - 1))) break;
+      if (!(urgency(k) > kUrgent * urgency(k - 1) + rounding())) break;
       std::swap(order_[k], order_[k - 1]);
     }
 }

@@ -71,6 +71,7 @@ class PersistentTree {
   void gather_leaves() noexcept;
   void reattach(int light) noexcept;
   void replace_child(int parent, int old_child, int new_child) noexcept;
+  [[nodiscard]] double rounding() const noexcept;
   void regroup() noexcept;
   void rank() noexcept;
   void put_parents_first() noexcept;

@@ -13,7 +13,7 @@ namespace {
 // clang-format off
 constexpr std::array kClaims = {
     //           method               place  rotation  resolution  prefix
-    MethodClaims{Method::best,          0.05,  1.2,      1.25,       1.6},
+    MethodClaims{Method::best,          0.05,  1.3,      1.27,       1.6},
     MethodClaims{Method::standard,      4,     1.14,     1.6,        1.1},
     MethodClaims{Method::havran,        4,     1.13,     1.3,        1.1},
     MethodClaims{Method::structured,    0.05,  1.25,     1.7,        1.1},
