@@ -301,17 +301,7 @@ struct BestLights::State {
   void exchange_lights() {
     to_luminance(potential, still, count);
     powers.solve(still, luminance_dark, luminance_power);
-    const double worth = exchange.weigh(powers, luminance_power, luminance_dark);
-    double kept = 0;
-    if (has_error) {
-      to_luminance(feedback, moving, count);
-      powers.multiply_by_inverse(moving, scratch);
-      double cost = 0;
-      for (int i = 0; i < count; ++i)
-        cost += moving[static_cast<std::size_t>(i)] * scratch[static_cast<std::size_t>(i)];
-      kept = cost > 0 ? std::min(kMostFeedback, std::sqrt(kFeedbackCost * worth / cost)) : kMostFeedback;
-    }
-    report.feedback = kept;
+    exchange.weigh(powers, luminance_power, luminance_dark);
     report.exchanges = 0;
     find_places();
     if (places.empty()) return;
@@ -330,6 +320,24 @@ struct BestLights::State {
       if (has_error) potentials_at(error, error_moments, light, light + 1, feedback);
     }
     report.exchanges = static_cast<int>(pairs.size());
+  }
+
+  // As much of the last error as costs little beside what the lights are worth where they stand now.
+  void bound_feedback() {
+    report.feedback = 0;
+    if (!has_error) return;
+    to_luminance(potential, still, count);
+    powers.solve(still, luminance_dark, luminance_power);
+    to_luminance(feedback, moving, count);
+    powers.multiply_by_inverse(moving, scratch);
+    double worth = 0, cost = 0;
+    for (int i = 0; i < count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      worth += luminance_power[k] * luminance_power[k] / powers.inverse_diagonal(i);
+      cost += moving[k] * scratch[k];
+    }
+    report.feedback =
+        cost > 0 ? std::min(kMostFeedback, std::sqrt(kFeedbackCost * worth / cost)) : kMostFeedback;
   }
 
   void solve_powers() {
@@ -503,6 +511,7 @@ struct BestLights::State {
       snap_to_bright();
     else
       exchange_lights();
+    bound_feedback();
     solve_powers();
     keep_error();
     write_out();

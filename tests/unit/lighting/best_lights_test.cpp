@@ -131,10 +131,12 @@ TEST(BestLights, PowerHasNoLag) {
   };
   const double before = there(lights.process(dim));
   const double at_once = there(lights.process(lit));
+  const double next = there(lights.process(lit));
   for (int frame = 0; frame < 30; ++frame) static_cast<void>(lights.process(lit));
   const double settled = there(lights.process(lit));
   EXPECT_GT(settled, 20 * before);
-  EXPECT_NEAR(at_once / settled, 1, 0.05);
+  EXPECT_GT(at_once, 0.8 * settled);  // one light for a lamp of two bins: its neighbours help, for a frame
+  EXPECT_NEAR(next / settled, 1, 0.03);
 }
 
 TEST(BestLights, SameFramesGiveTheSameLights) {
