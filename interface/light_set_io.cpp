@@ -49,6 +49,11 @@ DirectionalLight light_from_json(const JsonFields& fields, std::size_t index) {
         fields.whole("parent", index == 0 ? -1 : 0, static_cast<std::int64_t>(index) - 1));
   if (fields.has("id"))
     light.id = static_cast<std::uint32_t>(fields.whole("id", 0, std::numeric_limits<std::uint32_t>::max()));
+  if (fields.has("predicted_error")) {
+    const double error = fields.number("predicted_error");
+    if (!(error >= 0 && error <= kMostFloat)) fields.fail("predicted_error", "is below 0 or no float");
+    light.predicted_error = static_cast<float>(error);
+  }
   return light;
 }
 
@@ -94,6 +99,7 @@ std::string light_set_to_json(const LightSet& set, bool one_line) {
     value["illuminance"] = triple(light.illuminance);
     if (set.has_parents) value["parent"] = light.parent;
     if (light.id != 0) value["id"] = light.id;
+    if (light.predicted_error > 0) value["predicted_error"] = light.predicted_error;
     text += separator + line + value.dump();
     separator = ",";
   }

@@ -17,6 +17,9 @@ struct DirectionalLight {
   Rgb illuminance = Rgb::Zero();     // lux on a surface that faces the light
   std::int32_t parent = -1;          // index of an earlier light, where the whole set is a tree; else -1
   std::uint32_t id = 0;              // the same light carries the same id from frame to frame
+  // Relative RMSE of shadows (lighting/evaluation/evaluate.h) predicted for a reader that takes the lights up to this
+  // one; 0: not predicted
+  float predicted_error = 0;
 };
 
 enum class Coverage { hemisphere, sphere };

@@ -187,7 +187,9 @@ class Session {
     times.cpu_ms = cpu_ms() - cpu_start;
     times.passes = renderer_->pass_times();
     if (!options_.stats.empty()) statistics_.frames.push_back(times);
-    statistics_.lights = source_.lights().lights.size();
+    const auto& lights = source_.lights().lights;
+    statistics_.lights = lights.size();
+    statistics_.predicted_error = lights.empty() ? 0 : lights.back().predicted_error;
     statistics_.shadow_maps = renderer_->shadow_maps();
     const int number = frame_++;
     return write(number, true);

@@ -42,7 +42,8 @@ std::string Statistics::json() const {
       {"shadow_maps", shadow_maps},
       {"shadow_size", shadow_size},
       {"triangles", triangles},
-      {"predicted_error", nullptr},
+      {"predicted_error",
+       predicted_error > 0 ? nlohmann::ordered_json(predicted_error) : nlohmann::ordered_json()},
       {"gl_renderer", gl_renderer}};
   return report.dump(2) + "\n";
 }

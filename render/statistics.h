@@ -23,6 +23,7 @@ struct Statistics {
   std::size_t shadow_maps = 0;
   int shadow_size = 0;
   std::size_t triangles = 0;
+  float predicted_error = 0;  // of the last lights' shadows; 0: they carry no prediction
   std::string gl_renderer;
 
   // Passes are medians. A run without frames reports nulls.

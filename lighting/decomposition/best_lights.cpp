@@ -20,6 +20,11 @@ constexpr double kMostFeedback = 0.9;
 constexpr double kHysteresis = 0.5;  // a light leaves for what is worth half as much again
 constexpr double kThreshold = 1e-5;
 
+// Shadow error predicted: kErrorOfCost · √(kOwnErrorOfWorth · worth + what folding costs) / light on the ground. Fitted
+// on 29 captured maps, 1 to 128 lights: the ratio to the measured error has a spread (one sigma) of a third.
+constexpr double kErrorOfCost = 0.335;
+constexpr double kOwnErrorOfWorth = 0.06;
+
 constexpr int kAllAtomsUpTo = 128;  // lights
 
 // A place nearer to a light than this is that light's.
@@ -76,6 +81,7 @@ struct BestLights::State {
     place_points = Atoms(candidates_for(n));
     place_rest.assign(place_points.x.size() + 4, 0);
     place_feedback.assign(place_points.x.size() + 4, 0);
+    predicted.assign(static_cast<std::size_t>(n), 0.0f);
     out.resize(static_cast<std::size_t>(n));
   }
 
@@ -117,6 +123,7 @@ struct BestLights::State {
   Atoms place_points;
   std::vector<double> place_rest, place_feedback;
   Report report;
+  std::vector<float> predicted;  // of the first lights up to an entry
   std::vector<DirectionalLight> out;
 
   static std::array<double*, 3> rows(Rows& r) { return {r[0].data(), r[1].data(), r[2].data()}; }
@@ -395,6 +402,26 @@ struct BestLights::State {
     has_error = true;
   }
 
+  // What the lights show wrongly grows with what they are worth (a light more or less would change the error by about
+  // that) and with what folding leaves out; on the ground it is relative to the light that falls there.
+  void predict_errors() {
+    double worth = 0;
+    for (int i = 0; i < count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double diagonal = powers.inverse_diagonal(i);
+      if (diagonal > 0) worth += luminance_power[k] * luminance_power[k] / diagonal;
+    }
+    double ground = 0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(atoms.count); ++k)
+      ground += static_cast<double>(atoms.luminance[k] * std::max(0.0f, atoms.y[k]));
+    const auto costs = tree.costs();
+    double left_out = kOwnErrorOfWorth * worth;
+    for (std::size_t k = costs.size(); k-- > 0;) {
+      predicted[k] = ground > 0 ? static_cast<float>(kErrorOfCost * std::sqrt(left_out) / ground) : 0.0f;
+      left_out += std::max(0.0, costs[k]);
+    }
+  }
+
   void write_out() {
     to_luminance(power, luminance_power, count);
     const PersistentTree::Lights now{directions, luminance_power, powers.matrix(), powers.stride()};
@@ -404,6 +431,7 @@ struct BestLights::State {
       tree.build(now);
     grown = true;
     const auto entries = tree.order();
+    predict_errors();
     for (std::size_t k = 0; k < entries.size(); ++k) {
       const auto i = static_cast<std::size_t>(entries[k].light);
       DirectionalLight& light = out[k];
@@ -412,6 +440,7 @@ struct BestLights::State {
         light.illuminance[static_cast<Eigen::Index>(c)] = static_cast<float>(power[c][i] * atoms.scale);
       light.id = ids[i];
       light.parent = entries[k].parent;
+      light.predicted_error = predicted[k];
     }
   }
 
@@ -491,7 +520,10 @@ struct BestLights::State {
     report = {};
     moved.clear();
     if (!(atoms.scale > 0)) {
-      for (DirectionalLight& light : out) light.illuminance = Rgb::Zero();
+      for (DirectionalLight& light : out) {
+        light.illuminance = Rgb::Zero();
+        light.predicted_error = 0;
+      }
       if (!placed && !placed_exactly) stand_dark();
       has_error = false;
       return;

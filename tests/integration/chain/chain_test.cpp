@@ -186,14 +186,14 @@ TEST_F(Chain, ReloadChangesTheLightsWithoutAPause) {
   start_camera({"--scenario", "static", "--size", "320x240", "--rate", "30"});
   start_daemon();
   ASSERT_TRUE(published_reaches(10));
-  EXPECT_EQ(get("/api/v1/lights").at("method"), "havran");
+  EXPECT_EQ(get("/api/v1/lights").at("method"), "best");
   write_configuration("[lights]\ncount = 9\nclusters = 0\nsampler = \"standard\"\n");
   daemon_->send(SIGHUP);
   EXPECT_TRUE(eventually([&] { return get("/api/v1/lights").at("lights").size() == 9; }))
       << daemon_->stderr_text();
   EXPECT_EQ(get("/api/v1/lights").at("method"), "standard");
   EXPECT_EQ(status().at("capture").at("reconnects"), 0);
-  write_configuration("[lights]\ncount = 0\n");
+  write_configuration("[lights]\ncount = -1\n");
   daemon_->send(SIGHUP);
   EXPECT_TRUE(daemon_->wait_for_line("not reloaded"));
   EXPECT_TRUE(published_reaches(published() + 10));

@@ -74,15 +74,19 @@ TEST_F(ConfigurationFile, UnknownKeyNamesFileLineAndTheNearestKey) {
 }
 
 TEST_F(ConfigurationFile, ValueOutOfRangeNamesValueAndRange) {
-  for (const char* text : {"[lights]\ncount = 0\n", "[lights]\ncount = 100001\n", "[lights]\ncount = 3.5\n",
+  for (const char* text : {"[lights]\ncount = -1\n", "[lights]\ncount = 100001\n", "[lights]\ncount = 3.5\n",
                            "[lights]\ncount = \"3\"\n", "[lights]\ncount = [3]\n"}) {
     const auto loaded = load(text);
     ASSERT_FALSE(loaded) << text;
     EXPECT_THAT(loaded.error().message, HasSubstr("lights.count"));
-    EXPECT_THAT(loaded.error().message, HasSubstr("1 to 100000"));
+    EXPECT_THAT(loaded.error().message, HasSubstr("0 to 100000"));
   }
   EXPECT_FALSE(load("[source]\nrate_hz = nan\n"));
-  EXPECT_FALSE(load("[lights]\nsampler = \"best\"\n"));
+  EXPECT_FALSE(load("[lights]\nsampler = \"nothing\"\n"));
+  const auto many = load("[lights]\nsampler = \"best\"\ncount = 513\n");
+  ASSERT_FALSE(many);
+  EXPECT_THAT(many.error().message, HasSubstr("0 to 512"));
+  EXPECT_TRUE(load("[lights]\nsampler = \"havran\"\ncount = 513\n"));
 }
 
 TEST_F(ConfigurationFile, CommandLineOutOfRangeIsUsage) {
