@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bench/row_column_inversion.h"
+#include "lighting/decomposition/best_lights.h"
 #include "lighting/light_pipeline.h"
 #include "lighting/sampling/azimuth_seam.h"
 #include "lighting/sampling/halton.h"
@@ -46,6 +47,18 @@ Stepper sampler(Method method, int count) {
 
 Stepper every_frame_anew(Method method, int count) {
   return [=](const PolarMap& map, LightSet& set) { set = decompose(map, method, count).value(); };
+}
+
+// As the daemon runs it. Beyond its most lights every frame stands by itself.
+Stepper followed_by_best(int count) {
+  if (count > kMostPlacedLights) return every_frame_anew(Method::best, count);
+  return [=, best = late<BestLights>()](const PolarMap& map, LightSet& set) {
+    if (!*best) best->emplace(map.grid, count);
+    const auto lights = (*best)->process(map);
+    set.lights.assign(lights.begin(), lights.end());
+    set.has_parents = true;
+    set.total_illuminance = (*best)->total_illuminance().cast<float>();
+  };
 }
 
 std::vector<Vec2d> random_points(std::size_t count) {
@@ -104,10 +117,12 @@ Follower havran_as_printed() {
 Follower method_follower(Method method) {
   return {std::string(name(method)),
           [=](int count) {
-            return sampler_of(method) ? sampler(method, count) : every_frame_anew(method, count);
+            return sampler_of(method)       ? sampler(method, count)
+                   : method == Method::best ? followed_by_best(count)
+                                            : every_frame_anew(method, count);
           },
           {},
-          sampler_of(method).has_value()};
+          sampler_of(method).has_value() || method == Method::best};
 }
 
 Follower filtered_follower(Method method, TemporalChoice choice) {
@@ -143,6 +158,8 @@ Follower without_flicker(const Follower& follower) {
 std::vector<Follower> all_methods() {
   std::vector<Follower> all;
   for (const Method method : kMethods) all.push_back(method_follower(method));
+  all.push_back(
+      {"best, of one map", [](int count) { return every_frame_anew(Method::best, count); }, {}, false});
   return all;
 }
 
