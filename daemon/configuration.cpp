@@ -118,7 +118,7 @@ const std::vector<Key>& keys() {
       integer("map.sectors", "azimuth steps of the radiance map", &C::map, &C::Map::sectors, 1, 8192),
       integer("lights.count", "lights a frame, 0: 64 of best, 300 of the others", &C::lights,
               &C::Lights::count, 0, 100000),
-      text("lights.sampler", "best is steady by itself; what follows is for the others", &C::lights,
+      text("lights.sampler", "best is steady by itself; relaxed to clusters are for the others", &C::lights,
            &C::Lights::sampler, {"best", "havran", "standard"}),
       boolean("lights.relaxed", "blue-noise relaxation of the sample points", &C::lights,
               &C::Lights::relaxed),

@@ -43,7 +43,7 @@ TEST_F(ConfigurationFile, PrintShowsWhereAValueComesFrom) {
   const auto loaded = load("[lights]\ncount = 17\n", {{"http.listen", "127.0.0.1:0"}});
   ASSERT_TRUE(loaded);
   const std::string text = print_configuration(*loaded);
-  EXPECT_THAT(text, HasSubstr("lightwell.toml:2; lights sampled"));
+  EXPECT_THAT(text, HasSubstr("lightwell.toml:2; lights a frame"));
   EXPECT_THAT(text, HasSubstr("listen = \"127.0.0.1:0\"  # command line"));
   EXPECT_THAT(text, HasSubstr("clusters = 72  # default"));
 }
