@@ -63,9 +63,9 @@ Result<TemporalChoice> temporal_choice(const LightsOptions& options, Method meth
   const bool sampled = sampler_of(method).has_value();
   if (!options.temporal) {
     if (!sequence) return TemporalChoice::none;
-    return method == Method::best ? TemporalChoice::best
-           : sampled              ? TemporalChoice::fir
-                                  : TemporalChoice::none;
+    return method == Method::best && options.count <= kMostPlacedLights ? TemporalChoice::best
+           : sampled                                                    ? TemporalChoice::fir
+                                                                        : TemporalChoice::none;
   }
   const auto choice = temporal_choice_from_name(*options.temporal);
   if (!choice) return usage("--temporal is " + *options.temporal + ", allowed: " + temporal_choice_names());
@@ -76,6 +76,9 @@ Result<TemporalChoice> temporal_choice(const LightsOptions& options, Method meth
     return usage("--temporal best is what method best does itself; with --method " +
                  std::string(name(method)) +
                  (sampled ? " allowed: fir, minimum-phase, one-frame, none" : " allowed: none"));
+  if (*choice == TemporalChoice::best && options.count > kMostPlacedLights)
+    return usage("--temporal best with --count " + std::to_string(options.count) + ", allowed: up to " +
+                 std::to_string(kMostPlacedLights) + " lights");
   if (*choice != TemporalChoice::best && !sampled)
     return usage("--temporal " + *options.temporal +
                  " needs a method that keeps a light's identity from frame to frame: standard, havran");
@@ -132,7 +135,7 @@ class Decomposer {
 
   Result<LightSet> next(const PolarMap& map) {
     const auto sampler = sampler_of(plan_.method);
-    if (plan_.temporal == TemporalChoice::best && plan_.count <= kMostPlacedLights) return next_best(map);
+    if (plan_.temporal == TemporalChoice::best) return next_best(map);
     if (plan_.temporal == TemporalChoice::none || !sampler)
       return decompose(map, plan_.method, plan_.count, plan_.decompose);
     if (!pipeline_)

@@ -31,8 +31,8 @@ struct LightPipelineOptions {
 };
 
 // Map to published lights: the project's own, or sample → temporal filter → cluster (Havran et al. 2005, sections 3
-// and 4.3). Keeps the state between frames. After the first frame process allocates nothing, and it never fails: a
-// black map gives lights of no power.
+// and 4.3). Keeps the state between frames. Once lights have been placed process allocates nothing, and it never fails:
+// a black map gives lights of no power.
 class LightPipeline {
  public:
   static Result<LightPipeline> create(const PolarGrid& grid, int channels,
@@ -43,7 +43,7 @@ class LightPipeline {
 
   // map: of the grid and channels given to create. The lights stay valid until the next call.
   std::span<const DirectionalLight> process(const PolarMap& map) noexcept;
-  // Sampled and filtered, before clustering: light i is the same light in every frame.
+  // Sampled and filtered, before clustering: light i is the same light in every frame. Of best there are none.
   [[nodiscard]] std::span<const DirectionalLight> unclustered() const noexcept;
   // Total illuminance the lights stand for: filtered, equal to the sum over process()'s lights.
   [[nodiscard]] Rgb total_illuminance() const noexcept;

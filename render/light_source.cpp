@@ -53,6 +53,8 @@ class EnvironmentLights final : public LightSource {
     set.total_illuminance = best_->total_illuminance().cast<float>();
     set.lights.assign(lights.begin(), lights.end());
     set.has_parents = true;
+    if (!set.total_illuminance.isFinite().all())
+      return Error{ErrorKind::bad_input, "total illuminance is beyond a 32 bit float (3.4e38 lux)"};
     return set;
   }
 

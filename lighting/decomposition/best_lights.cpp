@@ -75,12 +75,11 @@ struct BestLights::State {
     quadrant_score.assign(4 * static_cast<std::size_t>(n), 0);
     quadrant_atom.assign(4 * static_cast<std::size_t>(n), -1);
     order.reserve(4 * static_cast<std::size_t>(n));
-    bright.reserve(static_cast<std::size_t>(1 / kBrightShare) + 1);
+    bright.reserve(4 * (static_cast<std::size_t>(1 / kBrightShare) + 1));  // of luminance and of each channel
     moved.reserve(static_cast<std::size_t>(n));
     places.reserve(static_cast<std::size_t>(candidates_for(n)));
     place_points = Atoms(candidates_for(n));
     place_rest.assign(place_points.x.size() + 4, 0);
-    place_feedback.assign(place_points.x.size() + 4, 0);
     predicted.assign(static_cast<std::size_t>(n), 0.0f);
     out.resize(static_cast<std::size_t>(n));
   }
@@ -98,6 +97,7 @@ struct BestLights::State {
   std::vector<BrightAtom> bright;  // their weights are not in the atoms while potentials are summed
   bool placed = false;
   bool placed_exactly = false;  // a light an atom: there were no more atoms
+  bool stands_dark = false;     // spread out, before any light
   bool has_error = false;
   bool second_half = false;  // of the atoms is looked through next
   bool settling = false;     // one map until nothing pays any more
@@ -121,7 +121,7 @@ struct BestLights::State {
   std::vector<float> distance, quadrant_score;
   std::vector<Vec3d> places;
   Atoms place_points;
-  std::vector<double> place_rest, place_feedback;
+  std::vector<double> place_rest;
   Report report;
   std::vector<float> predicted;  // of the first lights up to an entry
   std::vector<DirectionalLight> out;
@@ -160,12 +160,15 @@ struct BestLights::State {
   // Bright atoms out of the floats' sums, and back into them.
   void take_bright() {
     bright.clear();
+    std::array<float, 3> least{};  // of a channel's own light
+    for (std::size_t c = 0; c < 3; ++c)
+      least[c] = kBrightShare * static_cast<float>(atoms.total[static_cast<Eigen::Index>(c)] / atoms.scale);
     for (int k = 0; k < atoms.count; ++k) {
       const auto i = static_cast<std::size_t>(k);
-      if (std::max({atoms.luminance[i], atoms.weight[0][i], atoms.weight[1][i], atoms.weight[2][i]}) <
-              kBrightShare ||
-          bright.size() == bright.capacity())
-        continue;
+      const bool is_bright =
+          atoms.luminance[i] > kBrightShare || (least[0] > 0 && atoms.weight[0][i] > least[0]) ||
+          (least[1] > 0 && atoms.weight[1][i] > least[1]) || (least[2] > 0 && atoms.weight[2][i] > least[2]);
+      if (!is_bright || bright.size() == bright.capacity()) continue;
       bright.push_back({atoms.direction(k), atoms.weight_of(k), k});
       for (auto& plane : atoms.weight) plane[i] = 0;
     }
@@ -222,11 +225,6 @@ struct BestLights::State {
         error.weight[c][static_cast<std::size_t>(k)] *= static_cast<float>(f);
       for (int i = 0; i < count; ++i) feedback[c][static_cast<std::size_t>(i)] *= f;
       error_moments.col(static_cast<Eigen::Index>(c)) *= f;
-    }
-    for (int k = 0; k < error.padded(); ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      error.luminance[i] =
-          0.2126f * error.weight[0][i] + 0.7152f * error.weight[1][i] + 0.0722f * error.weight[2][i];
     }
   }
 
@@ -319,13 +317,15 @@ struct BestLights::State {
     options.threshold = kThreshold;
     options.least_distance = 0.1 / std::sqrt(count);
     const auto pairs = exchange.choose(directions, luminance_power, places, place_rest, options);
+    bool sound = true;
     for (const auto& [light, place] : pairs) {
       moved.push_back(light);
       set_light(light, places[static_cast<std::size_t>(place)]);
-      powers.move(light, directions);
+      sound = powers.move(light, directions) && sound;
       map_potentials(light, light + 1);
       if (has_error) potentials_at(error, error_moments, light, light + 1, feedback);
     }
+    if (!sound) powers.place(directions);  // has not been seen to happen
     report.exchanges = static_cast<int>(pairs.size());
   }
 
@@ -415,7 +415,7 @@ struct BestLights::State {
     for (std::size_t k = 0; k < static_cast<std::size_t>(atoms.count); ++k)
       ground += static_cast<double>(atoms.luminance[k] * std::max(0.0f, atoms.y[k]));
     const auto costs = tree.costs();
-    double left_out = kOwnErrorOfWorth * worth;
+    double left_out = placed_exactly ? 0 : kOwnErrorOfWorth * worth;
     for (std::size_t k = costs.size(); k-- > 0;) {
       predicted[k] = ground > 0 ? static_cast<float>(kErrorOfCost * std::sqrt(left_out) / ground) : 0.0f;
       left_out += std::max(0.0, costs[k]);
@@ -494,11 +494,15 @@ struct BestLights::State {
 
   // Atoms as they are, one light each.
   void show_all_atoms() {
+    bool same = placed_exactly;
     for (int i = 0; i < count; ++i) {
       const auto k = static_cast<std::size_t>(i);
       const bool lit = i < atoms.count;
       const Vec3d d = lit ? atoms.direction(i) : atoms.direction(0);
-      if (!placed_exactly || directions[k] != d) set_light(i, d);
+      if (!placed_exactly || directions[k] != d) {
+        set_light(i, d);
+        same = false;
+      }
       const Rgbd w = lit ? atoms.weight_of(i) : Rgbd::Zero();
       for (std::size_t c = 0; c < 3; ++c) power[c][k] = w[static_cast<Eigen::Index>(c)];
     }
@@ -509,10 +513,12 @@ struct BestLights::State {
       for (int i = 0; i < count && sum > 0; ++i) power[c][static_cast<std::size_t>(i)] *= total / sum;
     }
     placed_exactly = true;
-    placed = has_error = grown = false;
-    powers.place(directions);
+    placed = has_error = false;
+    if (!same) {
+      powers.place(directions);
+      grown = false;
+    }
     write_out();
-    grown = false;
   }
 
   void process(const PolarMap& map) {
@@ -524,7 +530,7 @@ struct BestLights::State {
         light.illuminance = Rgb::Zero();
         light.predicted_error = 0;
       }
-      if (!placed && !placed_exactly) stand_dark();
+      if (!placed && !placed_exactly && !stands_dark) stand_dark();
       has_error = false;
       return;
     }
@@ -532,7 +538,7 @@ struct BestLights::State {
       show_all_atoms();
       return;
     }
-    placed_exactly = false;
+    placed_exactly = stands_dark = false;
     take_bright();
     sum_moments(atoms, atom_moments);
     const bool first = !placed;
@@ -552,6 +558,7 @@ struct BestLights::State {
 
   // Before any light: a tree of lights spread over the cap, all dark.
   void stand_dark() {
+    stands_dark = true;
     const double reach = 1 - std::cos(std::min(grid.theta_max_rad, kPi));
     for (int i = 0; i < count; ++i) {
       const double y = 1 - (i + 0.5) / count * reach;
@@ -577,7 +584,7 @@ std::span<const DirectionalLight> BestLights::process(const PolarMap& map) {
 }
 
 void BestLights::reset() noexcept {
-  state_->placed = false;
+  // Places are kept: from them exchange finds the way to any map, and a frame after a gap costs what any other does.
   state_->has_error = false;
 }
 

@@ -22,8 +22,9 @@ inline constexpr int kMostPlacedLights = 512;
 // worth little are exchanged for places that are worth more (light_exchange.h) → powers again. The powers sum to the
 // map's total a channel.
 //
-// After the first frame nothing is allocated and nothing fails; a black map gives lights of no power that keep their
-// places. A map of fewer atoms than lights gives a light each and the rest without power.
+// A black map gives lights of no power that keep their places. A map of no more atoms than lights gives a light each and
+// the rest without power. Once lights have been placed nothing is allocated; the first frame with light, one after a map
+// of so few atoms, and such a map where it is another than before, allocate and take the time of a first frame.
 class BestLights {
  public:
   // count: 1 to kMostPlacedLights
@@ -37,7 +38,7 @@ class BestLights {
   std::span<const DirectionalLight> process(const PolarMap& map);
   // The last map's: what its lights sum to.
   [[nodiscard]] Rgbd total_illuminance() const noexcept;
-  // Forgets all frames.
+  // Forgets the last frame's error (a gap, another camera); lights keep their places.
   void reset() noexcept;
 
   // What the last frame did.

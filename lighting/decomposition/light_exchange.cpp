@@ -63,6 +63,7 @@ void LightExchange::remove(int i) noexcept {
   double* row = &inverse_[k * static_cast<std::size_t>(stride_)];
   std::copy_n(row, stride_, column_.begin());
   const double pivot = column_[k];
+  if (!(pivot > 0)) return;
   const double t = w_[k] / pivot;
   for (int j = 0; j < size_; ++j) w_[static_cast<std::size_t>(j)] -= column_[static_cast<std::size_t>(j)] * t;
   for (int c = 0; c < places_; ++c) {
@@ -118,9 +119,10 @@ void LightExchange::price_lights(double hysteresis) noexcept {
     const bool lit = lit_[k] && pivot > 0;
     step_[k] = lit ? w_[k] / pivot : 0;
     inverse_pivot_[k] = lit ? 1 / pivot : 0;
-    price_[k] = i >= size_ || fresh_[k] ? std::numeric_limits<double>::infinity()
-                : lit                   ? (1 + hysteresis) * w_[k] * step_[k]
-                                        : 0;
+    const bool stays = i >= size_ || fresh_[k] || (lit_[k] && !lit);
+    price_[k] = stays ? std::numeric_limits<double>::infinity()
+                : lit ? (1 + hysteresis) * w_[k] * step_[k]
+                      : 0;
   }
 }
 

@@ -59,7 +59,7 @@ void LightPowers::correct(std::span<const double> b, std::span<double> x, int wi
 
 // Both updates start from a corrected vector: then errors that the rest of the inverse has are passed on as they are and
 // do not grow, however often lights move.
-void LightPowers::move(int i, std::span<const Vec3d> directions) noexcept {
+bool LightPowers::move(int i, std::span<const Vec3d> directions) noexcept {
   const auto& kernel = placement_kernel::kernels();
   const auto own_place = static_cast<std::size_t>(i);
   // Out: the inverse without light i.
@@ -69,8 +69,8 @@ void LightPowers::move(int i, std::span<const Vec3d> directions) noexcept {
   correct(unconstrained_, column_, -1);
   for (int j = 0; j < size_; ++j)
     inverse_[at(i, j)] = inverse_[at(j, i)] = column_[static_cast<std::size_t>(j)];
-  kernel.add_outer(inverse_.data(), size_, stride_, -1 / std::max(column_[own_place], 1e-300), column_.data(),
-                   column_.data());
+  if (!(column_[own_place] > 0)) return false;
+  kernel.add_outer(inverse_.data(), size_, stride_, -1 / column_[own_place], column_.data(), column_.data());
   for (int j = 0; j < size_; ++j) inverse_[at(i, j)] = inverse_[at(j, i)] = 0;
   // In: by its Schur complement.
   for (int j = 0; j < size_; ++j)
@@ -86,9 +86,11 @@ void LightPowers::move(int i, std::span<const Vec3d> directions) noexcept {
   double complement = own;
   for (int j = 0; j < size_; ++j)
     complement -= column_[static_cast<std::size_t>(j)] * unconstrained_[static_cast<std::size_t>(j)];
+  if (!(complement > kLeastPivot)) return false;
   unconstrained_[own_place] = -1;
-  kernel.add_outer(inverse_.data(), size_, stride_, 1 / std::max(complement, kLeastPivot),
-                   unconstrained_.data(), unconstrained_.data());
+  kernel.add_outer(inverse_.data(), size_, stride_, 1 / complement, unconstrained_.data(),
+                   unconstrained_.data());
+  return true;
 }
 
 void LightPowers::multiply_by_inverse(std::span<const double> b, std::span<double> out) const noexcept {
@@ -142,6 +144,9 @@ void LightPowers::solve(std::span<const double> b, Dark& dark, std::span<double>
   for (int i = 0; i < size_; ++i)
     largest = std::max(largest, std::abs(unconstrained_[static_cast<std::size_t>(i)]));
   const double least = 1e-9 * largest;
+  double largest_b = 0;
+  for (int i = 0; i < size_; ++i) largest_b = std::max(largest_b, std::abs(b[static_cast<std::size_t>(i)]));
+  const double pull = -1e-13 * largest_b;  // a dark light that is pulled up by less stays
   int fewest = size_ + 1, patience = 3;
   for (int round = 0; round < kMostRounds; ++round) {
     std::copy(unconstrained_.begin(), unconstrained_.end(), w.begin());
@@ -155,7 +160,7 @@ void LightPowers::solve(std::span<const double> b, Dark& dark, std::span<double>
       if (dark.is_dark[static_cast<std::size_t>(i)] == 0 && w[static_cast<std::size_t>(i)] < -least)
         ++violating, last = i;
     for (std::size_t z = 0; z < dark.lights.size(); ++z)
-      if (multiplier_[z] < -1e-12) ++violating, last = std::max(last, dark.lights[z]);
+      if (multiplier_[z] < pull) ++violating, last = std::max(last, dark.lights[z]);
     if (violating == 0) break;
     const bool all = violating < fewest || --patience >= 0;
     if (violating < fewest) {
@@ -164,7 +169,7 @@ void LightPowers::solve(std::span<const double> b, Dark& dark, std::span<double>
     }
     for (std::size_t z = 0; z < dark.lights.size(); ++z) {
       const int i = dark.lights[z];
-      if (multiplier_[z] < -1e-12 && (all || i == last)) dark.is_dark[static_cast<std::size_t>(i)] = 2;
+      if (multiplier_[z] < pull && (all || i == last)) dark.is_dark[static_cast<std::size_t>(i)] = 2;
     }
     for (int i = 0; i < size_; ++i) {
       char& side = dark.is_dark[static_cast<std::size_t>(i)];

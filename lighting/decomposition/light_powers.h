@@ -27,8 +27,8 @@ class LightPowers {
 
   // All lights anew.
   void place(std::span<const Vec3d> directions);
-  // Light i comes to directions[i], the others are as they were.
-  void move(int i, std::span<const Vec3d> directions) noexcept;
+  // Light i comes to directions[i], the others are as they were. False: rounding has eaten the inverse, place them anew.
+  [[nodiscard]] bool move(int i, std::span<const Vec3d> directions) noexcept;
   // b and w: stride() values, b[i] = Σ light · k(direction i, light's). w[i] ≥ 0; 0 behind the lights.
   void solve(std::span<const double> b, Dark& dark, std::span<double> w) noexcept;
 

@@ -24,7 +24,7 @@ PersistentTree::PersistentTree(int lights) : count_(lights) {
   leaves_.resize(n);
   order_.reserve(n);
   scratch_.reserve(n);
-  stack_.reserve(2 * n);
+  stack_.reserve(3 * n);
   placed_.resize(2 * n - 1);
   shown_by_.resize(2 * n - 1);
   slot_.resize(n);
@@ -195,6 +195,10 @@ void PersistentTree::gather_leaves() noexcept {
   while (!stack_.empty()) {
     const int n = stack_.back();
     stack_.pop_back();
+    if (n < 0) {  // all of this group's lights have been gathered
+      node(~n).last = next;
+      continue;
+    }
     Node& group = node(n);
     group.first = next;
     if (is_light(n)) {
@@ -202,10 +206,10 @@ void PersistentTree::gather_leaves() noexcept {
       group.last = next;
       continue;
     }
+    stack_.push_back(~n);
     stack_.push_back(group.child[1]);
     stack_.push_back(group.child[0]);
   }
-  for (std::size_t k = order_.size(); k-- > 0;) node(order_[k]).last = node(node(order_[k]).child[1]).last;
 }
 
 void PersistentTree::replace_child(int parent, int old_child, int new_child) noexcept {
@@ -354,6 +358,7 @@ void PersistentTree::follow(const Lights& lights, std::span<const int> moved) no
     for (std::size_t k = order_.size(); k-- > 0;) sum(order_[k]);
     regroup();
     put_parents_first();
+    gather_leaves();
     for (std::size_t k = order_.size(); k-- > 0;) sum(order_[k]);
     rank();
   }

@@ -5,6 +5,8 @@
 #if defined(__x86_64__) && defined(__AVX2__)
 #include <immintrin.h>
 
+#define LIGHTWELL_AVX2_KERNELS
+
 // The kernels' text stands behind their declarations.
 #include "lighting/decomposition/placement_kernel/kernels.inl"
 

@@ -28,7 +28,7 @@ LIGHTWELL_INLINE void store(T* p, const Vector& v) {
 }
 
 LIGHTWELL_INLINE void root(const Floats& q, Floats& r) {
-#if defined(__AVX__)
+#if defined(LIGHTWELL_AVX2_KERNELS)
   r = _mm256_sqrt_ps(q);
 #else
   for (int lane = 0; lane < kLanes; ++lane) r[lane] = __builtin_sqrtf(q[lane]);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <vector>
 
 #include "lighting/decomposition/light_exchange.h"
@@ -83,7 +84,7 @@ TEST(LightPowers, InverseHoldsHoweverOftenLightsMove) {
   powers.place(d);
   for (std::size_t k = 0; k < places.size(); ++k) {
     d[k % n] = places[k];
-    powers.move(static_cast<int>(k % n), d);
+    ASSERT_TRUE(powers.move(static_cast<int>(k % n), d));
   }
   const Eigen::MatrixXd g = matrix_of(d);
   double off = 0;
