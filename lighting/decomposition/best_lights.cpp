@@ -9,6 +9,7 @@
 #include "lighting/decomposition/light_exchange.h"
 #include "lighting/decomposition/median_cut.h"
 #include "lighting/decomposition/persistent_tree.h"
+#include "lighting/decomposition/split_tree.h"
 
 namespace lightwell {
 namespace {
@@ -20,10 +21,11 @@ constexpr double kMostFeedback = 0.9;
 constexpr double kHysteresis = 0.5;  // a light leaves for what is worth half as much again
 constexpr double kThreshold = 1e-5;
 
-// Shadow error predicted: kErrorOfCost · √(kOwnErrorOfWorth · worth + what folding costs) / light on the ground. Fitted
-// on 29 captured maps, 1 to 128 lights: the ratio to the measured error has a spread (one sigma) of a third.
-constexpr double kErrorOfCost = 0.335;
-constexpr double kOwnErrorOfWorth = 0.06;
+// Shadow error predicted: kErrorOfCost · √(kOwnErrorOfCells · Σ atom · its light · their distance + what folding costs) /
+// light on the ground. Fitted on 29 captured maps, 1 to 128 lights: the ratio to the measured error has a spread (one
+// sigma) of a quarter, 95 % lie within a factor of 1.6.
+constexpr double kErrorOfCost = 0.34;
+constexpr double kOwnErrorOfCells = 0.17;
 
 constexpr int kAllAtomsUpTo = 128;  // lights
 
@@ -99,6 +101,7 @@ struct BestLights::State {
   bool placed_exactly = false;  // a light an atom: there were no more atoms
   bool stands_dark = false;     // spread out, before any light
   bool has_error = false;
+  bool looked = false;       // at the atoms' nearest lights, as they stood before this frame's exchanges
   bool second_half = false;  // of the atoms is looked through next
   bool settling = false;     // one map until nothing pays any more
 
@@ -287,6 +290,17 @@ struct BestLights::State {
     place_points.finish();
   }
 
+  // The nearest light of each of these atoms; of the others none is known.
+  void look_at_atoms(int begin, int end) {
+    std::fill(nearest.begin(), nearest.end(), -1);
+    auto points = atoms.points();
+    points.x += begin, points.y += begin, points.z += begin, points.s += begin;
+    points.count = end - begin;
+    placement_kernel::kernels().nearest(points, light_points(), nearest.data() + begin,
+                                        distance.data() + begin);
+    looked = true;
+  }
+
   placement_kernel::Points light_points() const {
     auto points = lights.points();
     points.count = count;
@@ -402,20 +416,25 @@ struct BestLights::State {
     has_error = true;
   }
 
-  // What the lights show wrongly grows with what they are worth (a light more or less would change the error by about
-  // that) and with what folding leaves out; on the ground it is relative to the light that falls there.
+  // What the lights show wrongly grows with how far atoms are from the light that stands for them and with what folding
+  // leaves out; on the ground it is relative to the light that falls there.
   void predict_errors() {
-    double worth = 0;
-    for (int i = 0; i < count; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      const double diagonal = powers.inverse_diagonal(i);
-      if (diagonal > 0) worth += luminance_power[k] * luminance_power[k] / diagonal;
+    // Atoms at the distance of their light, which the frame's search for places has found (of half of them above
+    // kAllAtomsUpTo lights).
+    double cells = 0, looked_at = 0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(atoms.count); ++k) {
+      if (nearest[k] < 0) continue;
+      const auto share = static_cast<double>(atoms.luminance[k]);
+      cells +=
+          share * luminance_power[static_cast<std::size_t>(nearest[k])] * static_cast<double>(distance[k]);
+      looked_at += share;
     }
+    if (looked_at > 0) cells /= looked_at;
     double ground = 0;
     for (std::size_t k = 0; k < static_cast<std::size_t>(atoms.count); ++k)
       ground += static_cast<double>(atoms.luminance[k] * std::max(0.0f, atoms.y[k]));
     const auto costs = tree.costs();
-    double left_out = placed_exactly ? 0 : kOwnErrorOfWorth * worth;
+    double left_out = kOwnErrorOfCells * cells;
     for (std::size_t k = costs.size(); k-- > 0;) {
       predicted[k] = ground > 0 ? static_cast<float>(kErrorOfCost * std::sqrt(left_out) / ground) : 0.0f;
       left_out += std::max(0.0, costs[k]);
@@ -431,6 +450,8 @@ struct BestLights::State {
       tree.build(now);
     grown = true;
     const auto entries = tree.order();
+    if (!looked) look_at_atoms(0, atoms.padded());
+    looked = false;
     predict_errors();
     for (std::size_t k = 0; k < entries.size(); ++k) {
       const auto i = static_cast<std::size_t>(entries[k].light);
@@ -457,6 +478,7 @@ struct BestLights::State {
       if (round + 1 < kImprovements) place_at(descend_lights(atoms, directions, grid.theta_max_rad, kSteps));
     }
     snap_to_bright();
+    looked = false;
     settling = false;
     grown = false;
     solve_powers();
@@ -494,15 +516,11 @@ struct BestLights::State {
 
   // Atoms as they are, one light each.
   void show_all_atoms() {
-    bool same = placed_exactly;
     for (int i = 0; i < count; ++i) {
       const auto k = static_cast<std::size_t>(i);
       const bool lit = i < atoms.count;
       const Vec3d d = lit ? atoms.direction(i) : atoms.direction(0);
-      if (!placed_exactly || directions[k] != d) {
-        set_light(i, d);
-        same = false;
-      }
+      if (!placed_exactly || directions[k] != d) set_light(i, d);
       const Rgbd w = lit ? atoms.weight_of(i) : Rgbd::Zero();
       for (std::size_t c = 0; c < 3; ++c) power[c][k] = w[static_cast<Eigen::Index>(c)];
     }
@@ -513,12 +531,14 @@ struct BestLights::State {
       for (int i = 0; i < count && sum > 0; ++i) power[c][static_cast<std::size_t>(i)] *= total / sum;
     }
     placed_exactly = true;
-    placed = has_error = false;
-    if (!same) {
-      powers.place(directions);
-      grown = false;
+    placed = has_error = grown = false;
+    for (int i = 0; i < count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      out[k] = {directions[k].cast<float>().normalized(), Rgb::Zero(), -1, ids[k]};
+      for (std::size_t c = 0; c < 3; ++c)
+        out[k].illuminance[static_cast<Eigen::Index>(c)] = static_cast<float>(power[c][k] * atoms.scale);
     }
-    write_out();
+    out = progressive_order(out);
   }
 
   void process(const PolarMap& map) {
@@ -600,7 +620,9 @@ std::vector<DirectionalLight> best_lights(const PolarMap& map, int count) {
   if (count > kMostPlacedLights) return median_cut(map, count);
   BestLights lights(map.grid, count, Effort::thorough);
   const auto out = lights.process(map);
-  return {out.begin(), out.end()};
+  std::vector<DirectionalLight> set(out.begin(), out.end());
+  for (DirectionalLight& light : set) light.id = 0;  // no frame follows in which it could be the same light
+  return set;
 }
 
 }  // namespace lightwell

@@ -83,14 +83,23 @@ Result<FirDesign> design_fir(const FirSpecification& s, FirPhase phase) {
   double sum = 0;
   for (const float tap : raw) sum += static_cast<double>(tap);
   // An exchange that failed leaves zeros, NaN or a filter that passes nothing.
-  if (!(std::isfinite(sum) && sum > 0.1))
+  const auto not_found = [&] {
     return Error{ErrorKind::failed, "no equiripple filter of order " + std::to_string(s.order) +
                                         " found for pass " + number(s.pass_hz) + " Hz, stop " +
                                         number(s.stop_hz) + " Hz at " + number(s.rate_hz) +
                                         " Hz: widen the gap between pass and stop or lower the order"};
+  };
+  if (!(std::isfinite(sum) && sum > 0.1)) return not_found();
   design.taps.resize(raw.size());
   for (std::size_t i = 0; i < raw.size(); ++i)  // symmetric to the last bit
     design.taps[i] = (static_cast<double>(raw[i]) + static_cast<double>(raw[raw.size() - 1 - i])) / 2 / sum;
+  // Long filters are beyond what the exchange can tell apart; it ends somewhere, with bands that are none.
+  constexpr int kSureOrder = 64;
+  constexpr double kNoBand = 0.1;
+  if (s.order > kSureOrder &&
+      (largest_deviation(design.taps, 0, s.pass_hz, s.rate_hz, 1) > kNoBand ||
+       largest_deviation(design.taps, s.stop_hz, s.rate_hz / 2, s.rate_hz, 0) > kNoBand))
+    return not_found();
   if (phase == FirPhase::minimum) {
     auto least_delay = minimum_phase(design.taps);
     if (!least_delay) return least_delay.error();

@@ -121,5 +121,21 @@ TEST(FirDesign, EveryReasonableSpecificationGivesAUsableFilter) {
       }
 }
 
+TEST(FirDesign, OrdersThatTheExchangeCannotTellApartAreRefused) {
+  for (const int order : {8, 64, 92}) {
+    const auto design = design_fir({60, 12, 20, order});
+    ASSERT_TRUE(design) << order;
+    EXPECT_LT(design->pass_ripple_db, 1) << order;
+  }
+  for (const int order : {100, 127}) {
+    const auto design = design_fir({60, 12, 20, order});
+    if (design) {
+      EXPECT_LT(design->pass_ripple_db, 1) << order;
+    } else {
+      EXPECT_NE(design.error().message.find("lower the order"), std::string::npos);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lightwell
