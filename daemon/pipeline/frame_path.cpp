@@ -70,9 +70,12 @@ Status FramePath::prepare(const FrameFormat& format, double rate_hz) {
     harmonics_.emplace(shape_.grid);
     format_ = format;
   }
-  auto lights = LightPipeline::create(shape_.grid, shape_.channels, filter_for(rate_hz));
-  if (!lights) return lights.error();
-  lights_ = std::move(*lights);
+  // best has no filter that a rate would change, and its lights' history would be lost with it.
+  if (!lights_ || options_.lights.sampler != LightPipelineOptions::Sampler::best) {
+    auto lights = LightPipeline::create(shape_.grid, shape_.channels, filter_for(rate_hz));
+    if (!lights) return lights.error();
+    lights_ = std::move(*lights);
+  }
   flicker_.reset();
   if (options_.flicker_hz > 0 && rate_hz > 0) {
     auto flicker = FlickerFilter::create(shape_.radiance.size(), {options_.flicker_hz, rate_hz, 0});

@@ -242,6 +242,8 @@ TEST_F(Chain, RecordedTakeReplaysTheSameLightsBitForBit) {
     ASSERT_TRUE(url) << daemon_->stderr_text();
     http_ = url->substr(0, url->find('/'));
     ASSERT_TRUE(eventually([&] { return status().value("source_state", "") == "ended"; })) << status();
+    // The source has ended; its last frames may still be on their way to lights.
+    ASSERT_TRUE(published_reaches(status().at("capture").at("received").get<std::uint64_t>())) << status();
     lights = get("/api/v1/lights");
     daemon_.reset();
   }
