@@ -246,11 +246,7 @@ struct BestLights::State {
     const int begin = by_halves && second_half ? middle : 0;
     const int end = by_halves && !second_half ? middle : atoms.padded();
     second_half = !second_half;
-    auto points = atoms.points();
-    points.x += begin, points.y += begin, points.z += begin, points.s += begin;
-    points.count = end - begin;
-    placement_kernel::kernels().nearest(points, light_points(), nearest.data() + begin,
-                                        distance.data() + begin);
+    look_at_atoms(begin, end);
     std::fill(quadrant_score.begin(), quadrant_score.end(), 0.0f);
     std::fill(quadrant_atom.begin(), quadrant_atom.end(), -1);
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(std::min(end, atoms.count));
