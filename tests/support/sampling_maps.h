@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lighting/light_set.h"
 #include "lighting/polar_map.h"
 
 // Polar maps whose sampling is hard, shared by the tests of everything that draws lights from a map.
@@ -24,6 +25,20 @@ inline PolarMap constant_map(const PolarGrid& grid, const Rgb& radiance, int cha
   for (int c = 0; c < channels; ++c)
     for (float& v : map.plane(c)) v = radiance[c];
   return map;
+}
+
+// What the map itself is: a light in every bin's centre.
+inline LightSet every_bin_a_light(const PolarMap& map) {
+  LightSet set;
+  for (int ring = 0; ring < map.grid.rings; ++ring)
+    for (int sector = 0; sector < map.grid.sectors; ++sector) {
+      const auto bin = static_cast<std::size_t>(ring * map.grid.sectors + sector);
+      DirectionalLight light;
+      light.direction = map.grid.bin_direction(ring, sector).cast<float>();
+      light.illuminance = map.rgb(bin) * map.solid_angle_sr[bin];
+      set.lights.push_back(light);
+    }
+  return set;
 }
 
 // Independent bins over a few powers of ten, some black.

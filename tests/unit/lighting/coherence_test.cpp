@@ -14,18 +14,7 @@ namespace {
 
 const PolarGrid kGrid{9, 24, kPi / 2};
 
-LightSet every_bin_a_light(const PolarMap& map) {
-  LightSet set;
-  for (int ring = 0; ring < map.grid.rings; ++ring)
-    for (int sector = 0; sector < map.grid.sectors; ++sector) {
-      const auto bin = static_cast<std::size_t>(ring * map.grid.sectors + sector);
-      DirectionalLight light;
-      light.direction = map.grid.bin_direction(ring, sector).cast<float>();
-      light.illuminance = map.rgb(bin) * map.solid_angle_sr[bin];
-      set.lights.push_back(light);
-    }
-  return set;
-}
+using test::every_bin_a_light;
 
 PolarMap scaled(const PolarMap& map, double factor) {
   PolarMap result = map;

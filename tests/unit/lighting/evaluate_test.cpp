@@ -8,6 +8,7 @@
 #include <random>
 
 #include "lighting/lat_long_image.h"
+#include "tests/support/sampling_maps.h"
 
 namespace lightwell {
 namespace {
@@ -20,18 +21,7 @@ PolarMap random_map(const PolarGrid& grid, double range) {
   return map;
 }
 
-LightSet every_bin_a_light(const PolarMap& map) {
-  LightSet set;
-  for (int ring = 0; ring < map.grid.rings; ++ring)
-    for (int sector = 0; sector < map.grid.sectors; ++sector) {
-      const auto bin = static_cast<std::size_t>(ring * map.grid.sectors + sector);
-      DirectionalLight light;
-      light.direction = map.grid.bin_direction(ring, sector).cast<float>();
-      light.illuminance = map.rgb(bin) * map.solid_angle_sr[bin];
-      set.lights.push_back(light);
-    }
-  return set;
-}
+using test::every_bin_a_light;
 
 // Walks along the ray from the point and looks whether it enters the sphere: no shared formula.
 bool hidden_by_marching(const Vec3d& point, const Vec3d& direction) {
