@@ -29,6 +29,7 @@ constexpr float kLeastNoise = 3e-3f;
 constexpr float kNoiseUp = 1.15f;
 constexpr float kNoiseDown = 0.9364f;
 constexpr float kDark = 0.2f;
+constexpr double kAveraged = 0.05;  // of a swing: less than this left by the exposure says nothing about it
 
 double folded(double frequency_hz, double rate_hz) {
   const double turns = frequency_hz / rate_hz;
@@ -113,54 +114,80 @@ void FlickerFilter::turn(double seconds, double exposure_s) noexcept {
     const double now = averaging(frequency_hz_[k], exposure_s);
     // Of a swing that was averaged away nothing can be said for the new exposure: it is learnt.
     const double change = exposure_s == last_exposure_s_ ? 1
-                          : std::abs(before) > 0.05      ? std::clamp(now / before, -20.0, 20.0)
-                                                         : 0;
+                          : std::abs(before) > kAveraged
+                              ? std::clamp(now / before, -1 / kAveraged, 1 / kAveraged)
+                              : 0;
     const double angle = 2 * kPi * std::remainder(frequency_hz_[k] * seconds, 1.0);
     turn_cos_[k] = static_cast<float>(change * std::cos(angle));
     turn_sin_[k] = static_cast<float>(change * std::sin(angle));
     const double phase = 2 * kPi * std::remainder(frequency_hz_[k] * (last_s_ + seconds - start_s_), 1.0);
-    phase_cos_[k] = static_cast<float>(std::cos(phase));
-    phase_sin_[k] = static_cast<float>(std::sin(phase));
+    phase_cos_[k] = static_cast<float>(now * std::cos(phase));
+    phase_sin_[k] = static_cast<float>(now * std::sin(phase));
+    const double keep = std::abs(now) > kAveraged ? 1 / now : 0;
+    keep_cos_[k] = static_cast<float>(keep * std::cos(phase));
+    keep_sin_[k] = static_cast<float>(keep * std::sin(phase));
   }
 }
 
-// The level has jumped: lamps were switched, or something moves.
-void FlickerFilter::jump(Follower& f, float power, float innovation) const noexcept {
-  const bool lit = power * kDark > f.level;       // was dark beside what it is now
-  const bool darkened = power < kDark * f.level;  // is dark beside what it was
-  const float per_level = f.level > 0 ? 1 / f.level : 0;
-  if (f.age < learning_frames()) f.trusted = false;  // again, before it was learnt: no lamp does that
-  float swing = 0;
+// Remembers a confirmed swing, but not the none of a lamp that is off: that lamp's own is wanted when it is lit again.
+bool FlickerFilter::keep(Follower& f) const noexcept {
+  const bool dark = f.level < kDark * f.kept_level;
   float size = 0;
+  for (std::size_t k = 0; k < order_.size(); ++k) size += std::abs(f.swing[k]) + std::abs(f.quadrature[k]);
+  if (!f.confirmed || (dark && size <= 0.01f * f.level)) return dark;
+  const float per_level = f.level > 0 ? 1 / f.level : 0;
   for (std::size_t k = 0; k < order_.size(); ++k) {
-    float& u = f.swing[k];
-    float& v = f.quadrature[k];
-    if (!f.trusted) u = v = 0;
-    if (darkened && f.trusted) {
-      f.kept_swing[k] = (u * phase_cos_[k] + v * phase_sin_[k]) * per_level;
-      f.kept_quadrature[k] = (v * phase_cos_[k] - u * phase_sin_[k]) * per_level;
-    }
-    if (lit || darkened) {
-      u = f.kept_swing[k] * phase_cos_[k] - f.kept_quadrature[k] * phase_sin_[k];
-      v = f.kept_quadrature[k] * phase_cos_[k] + f.kept_swing[k] * phase_sin_[k];
-    }
-    swing += u;
-    size += std::abs(u) + std::abs(v);
+    f.kept_swing[k] = (f.swing[k] * keep_cos_[k] + f.quadrature[k] * keep_sin_[k]) * per_level;
+    f.kept_quadrature[k] = (f.quadrature[k] * keep_cos_[k] - f.swing[k] * keep_sin_[k]) * per_level;
   }
-  if (lit || darkened) {  // the swing is in parts of the level: power = level · (1 + swing)
-    f.level = power / std::max(0.4f, 1 + swing);
-    for (std::size_t k = 0; k < order_.size(); ++k) {
-      f.swing[k] *= f.level;
-      f.quadrature[k] *= f.level;
-    }
-    size *= f.level;
-  } else {
-    f.level = power - swing;
+  f.kept_level = std::max(0.0f, f.level);
+  return false;
+}
+
+// The level has jumped: lamps were switched, one frame lies out, or something moves.
+void FlickerFilter::jump(Follower& f, float power, float innovation) const noexcept {
+  const bool was_dark = keep(f);
+  const auto frames = static_cast<std::uint8_t>(4 * unknowns());
+  if (power < kDark * f.kept_level) {
+    f.serves = 0;
+  } else if (was_dark) {  // lit again, and the swing in parts of the level: power = level · (1 + swing)
+    f.kept_level = 1;
+    f.kept_level = power / std::max(0.4f, 1 + kept_swing(f));
+    f.serves = frames;
+  } else if (f.confirmed) {
+    f.serves = frames;
   }
-  // What was known before serves at once; what is new has to be learnt.
-  f.trusted = size > 0.01f * f.level;
+  f.level = power;
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    const float level = f.serves > 0 ? f.kept_level : 0;
+    f.swing[k] = level * (f.kept_swing[k] * phase_cos_[k] - f.kept_quadrature[k] * phase_sin_[k]);
+    f.quadrature[k] = level * (f.kept_quadrature[k] * phase_cos_[k] + f.kept_swing[k] * phase_sin_[k]);
+    f.level -= f.swing[k];
+  }
+  f.confirmed = false;
   f.scale = std::abs(innovation);
   f.age = 1;
+  f.foretold = 0;
+  f.foretold_swing = f.missed = f.against = 0;
+}
+
+float FlickerFilter::kept_swing(const Follower& f) const noexcept {
+  float swing = 0;
+  for (std::size_t k = 0; k < order_.size(); ++k)
+    swing += f.kept_swing[k] * phase_cos_[k] - f.kept_quadrature[k] * phase_sin_[k];
+  return f.kept_level * swing;
+}
+
+// Is the swing there? Of the power's regression on what was foretold: the slope is near 1, and four times its error.
+void FlickerFilter::confirm(Follower& f, float swing, float innovation) const noexcept {
+  if (f.age <= unknowns()) return;
+  if (f.foretold < kWindow) ++f.foretold;
+  const auto add = [](float& sum, float value) { sum += value - sum / kWindow; };
+  add(f.foretold_swing, std::abs(swing) + kLeastNoise * std::max(0.0f, f.level));
+  add(f.missed, std::abs(innovation));
+  add(f.against, swing < 0 ? innovation : -innovation);
+  f.confirmed = f.foretold >= unknowns() && 4 * f.against <= f.foretold_swing &&
+                4 * f.missed <= std::sqrt(static_cast<float>(f.foretold)) * f.foretold_swing;
 }
 
 void FlickerFilter::apply(double time_s, double exposure_s, std::span<float> powers) noexcept {
@@ -175,39 +202,46 @@ void FlickerFilter::apply(double time_s, double exposure_s, std::span<float> pow
   turn(time_s - last_s_, exposure_s);
   last_s_ = time_s;
   last_exposure_s_ = exposure_s;
+  for (std::size_t i = 0; i < powers.size(); ++i) follow(followers_[i], powers[i]);
+}
+
+void FlickerFilter::follow(Follower& f, float& power) const noexcept {
   const std::size_t harmonics = order_.size();
-  for (std::size_t i = 0; i < powers.size(); ++i) {
-    Follower& f = followers_[i];
-    const float power = powers[i];
-    float swing = 0;
+  float swing = 0;
+  for (std::size_t k = 0; k < harmonics; ++k) {
+    const float u = f.swing[k] * turn_cos_[k] - f.quadrature[k] * turn_sin_[k];
+    f.quadrature[k] = f.quadrature[k] * turn_cos_[k] + f.swing[k] * turn_sin_[k];
+    f.swing[k] = u;
+    swing += u;
+  }
+  const float innovation = power - f.level - swing;
+  f.noise = std::max(f.noise, kLeastNoise * f.level);
+  const auto squared = [](float v) { return static_cast<double>(v) * static_cast<double>(v); };
+  const double expected = squared(f.noise) + squared(f.scale) * static_cast<double>(innovation_[f.age]);
+  const float dark = kDark * f.kept_level;
+  const bool lit =
+      f.level < dark && power >= dark;  // within learning too: from the dark no lamp swings so far
+  if (lit || squared(innovation) > kJump * expected) {
+    f.noise *= kNoiseUp;
+    jump(f, power, innovation);
+  } else {
+    if (f.age >= 4) f.noise *= std::abs(innovation) > f.noise ? kNoiseUp : kNoiseDown;
+    const auto& gain = gains_[f.age];
+    f.level += gain[0] * innovation;
     for (std::size_t k = 0; k < harmonics; ++k) {
-      const float u = f.swing[k] * turn_cos_[k] - f.quadrature[k] * turn_sin_[k];
-      f.quadrature[k] = f.quadrature[k] * turn_cos_[k] + f.swing[k] * turn_sin_[k];
-      f.swing[k] = u;
-      swing += u;
+      f.swing[k] += gain[1 + 2 * k] * innovation;
+      f.quadrature[k] += gain[2 + 2 * k] * innovation;
     }
-    const float innovation = power - f.level - swing;
-    f.noise = std::max(f.noise, kLeastNoise * f.level);
-    const auto squared = [](float v) { return static_cast<double>(v) * static_cast<double>(v); };
-    const double expected = squared(f.noise) + squared(f.scale) * static_cast<double>(innovation_[f.age]);
-    if (squared(innovation) > kJump * expected) {
-      f.noise *= kNoiseUp;
-      jump(f, power, innovation);
-    } else {
-      if (f.age >= 4) f.noise *= std::abs(innovation) > f.noise ? kNoiseUp : kNoiseDown;
-      const auto& gain = gains_[f.age];
-      f.level += gain[0] * innovation;
-      for (std::size_t k = 0; k < harmonics; ++k) {
-        f.swing[k] += gain[1 + 2 * k] * innovation;
-        f.quadrature[k] += gain[2 + 2 * k] * innovation;
-      }
-      if (f.age + 1u < kAges) ++f.age;
-      if (f.age > learning_frames()) f.trusted = true;
-    }
-    if (!f.trusted) continue;
+    if (f.age + 1u < kAges) ++f.age;
+    if (!f.confirmed) confirm(f, swing, innovation);
+  }
+  if (f.confirmed) {
     float out = power;
     for (std::size_t k = 0; k < harmonics; ++k) out -= f.swing[k];
-    powers[i] = std::max(0.0f, out);
+    power = std::max(0.0f, out);
+  } else if (f.serves > 0) {
+    --f.serves;
+    power = std::max(0.0f, power - kept_swing(f));
   }
 }
 
