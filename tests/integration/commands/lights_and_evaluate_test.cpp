@@ -215,8 +215,8 @@ TEST_F(Commands, MainsFlickerIsTakenOutAndASwitchedLampIsNot) {
   const double level = (as_it_is[0] + as_it_is[1] + as_it_is[2]) / 3;  // 100 Hz at 60: three frames a period
   for (std::size_t frame = 8; frame < 20; ++frame)
     EXPECT_NEAR(steady[frame] / level, 1, 0.02) << frame;  // twenty decibels of .3 are .03
-  // All lamps together become four times brighter: the swing that comes with that is learnt in three frames.
-  for (std::size_t frame = 24; frame < kFrames; ++frame) EXPECT_NEAR(steady[frame] / level, 4, 0.1) << frame;
+  // All lamps together become four times brighter: the swing that comes with that is known after six frames.
+  for (std::size_t frame = 26; frame < kFrames; ++frame) EXPECT_NEAR(steady[frame] / level, 4, 0.1) << frame;
   EXPECT_GT(steady[20] / level, 3);
 }
 
