@@ -101,6 +101,8 @@ std::string check_light(const lightwell_Light& light, std::size_t index, bool ha
   const auto earlier = static_cast<std::int64_t>(index);
   const bool rooted = index == 0 ? light.parent == -1 : light.parent >= 0 && light.parent < earlier;
   if (has_parents && !rooted) return wrong("parent is not an earlier light");
+  if (!(std::isfinite(light.predicted_error) && light.predicted_error >= 0))
+    return wrong("predicted_error is not finite and >= 0");
   return {};
 }
 
@@ -146,6 +148,7 @@ std::string to_wire(const LightFrame& message, lightwell_LightFrame& wire, Wire<
     set_rgb(buffer[i].illuminance, light.illuminance);
     buffer[i].id = light.id;
     buffer[i].parent = light.parent;
+    buffer[i].predicted_error = light.predicted_error;
   }
   const auto count = static_cast<std::uint32_t>(buffer.size());
   wire.lights = {count, count, buffer.data(), false};
@@ -177,6 +180,7 @@ std::string from_wire(const lightwell_LightFrame& wire, LightFrame& message) {
     light.illuminance = get_rgb(lights[i].illuminance);
     light.id = lights[i].id;
     light.parent = wire.has_parents ? lights[i].parent : -1;
+    light.predicted_error = lights[i].predicted_error;
   }
   message.harmonics.resize(harmonics.size() / 3);
   for (std::size_t i = 0; i < harmonics.size(); ++i)

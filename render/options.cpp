@@ -23,7 +23,7 @@ constexpr const char* kExample =
     "frame.\n"
     "Every light has a shadow: where there are more lights than --shadow-maps, the set is folded to that "
     "many first.\n"
-    "predicted_error in --stats: of shadows, where the lights carry one (method best, not over DDS).";
+    "predicted_error in --stats: of shadows, where the lights carry one (method best).";
 
 // "640x480", each side 1 to 16384; the driver may allow less.
 Result<std::pair<int, int>> parse_size(const std::string& text) {

@@ -95,7 +95,8 @@ inline void paint_sky(Snapshot& snapshot, float sun_azimuth_rad, std::size_t lig
     snapshot.lights.push_back({.direction = d,
                                .illuminance = radiance(d) * (i == 0 ? 0.002f : 0.08f),
                                .parent = static_cast<std::int32_t>(i) - 1,
-                               .id = static_cast<std::uint32_t>(i + 1)});
+                               .id = static_cast<std::uint32_t>(i + 1),
+                               .predicted_error = 0.3f / static_cast<float>(i + 1)});
     sum += snapshot.lights.back().illuminance;
   }
   for (DirectionalLight& light : snapshot.lights) light.illuminance *= total / sum;

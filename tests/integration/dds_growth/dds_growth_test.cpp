@@ -49,8 +49,8 @@ TEST_F(NextVersion, WriterIsUnderstoodByTodaysReader) {
   const auto reader = LightReader::create(domain_).value();
   const dds_entity_t writer = dds_create_writer(participant_, topic_, qos_, nullptr);
   ASSERT_GT(writer, 0);
-  lightwell_next_Light lights[2] = {{{0, 1, 0}, {1, 2, 3}, 11, -1, 0.5f},
-                                    {{1, 0, 0}, {4, 5, 6}, 12, 0, 0.25f}};
+  lightwell_next_Light lights[2] = {{{0, 1, 0}, {1, 2, 3}, 11, -1, 0.25f, 0.5f},
+                                    {{1, 0, 0}, {4, 5, 6}, 12, 0, 0.125f, 0.25f}};
   float zones[3] = {7, 8, 9};
   lightwell_next_LightFrame sent{};
   std::strcpy(sent.probe, "next");
@@ -77,6 +77,7 @@ TEST_F(NextVersion, WriterIsUnderstoodByTodaysReader) {
   EXPECT_EQ(received.lights[1].illuminance[2], 6);
   EXPECT_EQ(received.lights[1].id, 12u);
   EXPECT_EQ(received.lights[1].parent, 0);
+  EXPECT_EQ(received.lights[1].predicted_error, 0.125f);
 }
 
 TEST_F(NextVersion, ReaderUnderstandsTodaysWriterAndFindsNewMembersEmpty) {
@@ -85,7 +86,11 @@ TEST_F(NextVersion, ReaderUnderstandsTodaysWriterAndFindsNewMembersEmpty) {
   ASSERT_GT(reader, 0);
   LightFrame sent;
   sent.header.sequence = 42;
-  sent.lights = {{.direction = Vec3f::UnitX(), .illuminance = {4, 5, 6}, .parent = -1, .id = 12}};
+  sent.lights = {{.direction = Vec3f::UnitX(),
+                  .illuminance = {4, 5, 6},
+                  .parent = -1,
+                  .id = 12,
+                  .predicted_error = 0.25f}};
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   void* sample = nullptr;
   dds_sample_info_t info{};
@@ -103,6 +108,7 @@ TEST_F(NextVersion, ReaderUnderstandsTodaysWriterAndFindsNewMembersEmpty) {
   EXPECT_EQ(received.header.clock_offset_s, 0);
   ASSERT_EQ(received.lights._length, 1u);
   EXPECT_EQ(received.lights._buffer[0].id, 12u);
+  EXPECT_EQ(received.lights._buffer[0].predicted_error, 0.25f);
   EXPECT_EQ(received.lights._buffer[0].angular_radius_rad, 0);
   EXPECT_EQ(received.zones._length, 0u);
   dds_return_loan(reader, &sample, count);

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <nlohmann/json.hpp>
 #include <thread>
 
+#include "interface/atomic_file.h"
 #include "interface/dds_topics.h"
 #include "interface/environment_io.h"
 #include "render/egl_context.h"
@@ -31,6 +33,7 @@ struct FakeProbe {
     DirectionalLight light;
     light.direction = Vec3f::UnitY();
     light.illuminance = Rgb(100, 200, 300);
+    light.predicted_error = 0.125f;
     frame.header.total_illuminance = light.illuminance;
     frame.lights = {light};
     EXPECT_TRUE(writer->write(frame));
@@ -61,14 +64,15 @@ class Live : public ::testing::Test {
 };
 
 TEST_F(Live, RendersTheLightThatIsPublishedThoughItStartedFirst) {
-  ChildProcess program =
-      start_render(folder_.path(), arguments({"--frames", "2", "--out", file("f_%d.exr")}));
+  ChildProcess program = start_render(
+      folder_.path(), arguments({"--frames", "2", "--out", file("f_%d.exr"), "--stats", file("stats.json")}));
   ASSERT_TRUE(eventually([&] {
     return program.stderr_text().find("waiting for light") != std::string::npos;
   })) << program.stderr_text();
   FakeProbe probe(dds_);
   ASSERT_TRUE(eventually([&] { return probe.send(), !program.running(); }));
   EXPECT_EQ(program.wait(), 0) << program.stderr_text();
+  EXPECT_EQ(nlohmann::json::parse(read_text_file(file("stats.json")).value())["predicted_error"], 0.125);
   // Bottom row: the stage's matte ground, which no shadow reaches from straight above.
   const auto picture = read_environment(file("f_1.exr"));
   ASSERT_TRUE(picture.ok()) << picture.error().message;

@@ -47,6 +47,8 @@ TEST_F(PublisherTest, EveryFrameReachesAReaderThatKeepsUp) {
   ASSERT_EQ(frame.lights.size(), lease->lights.size());
   EXPECT_EQ(frame.lights[5].direction, lease->lights[5].direction);
   EXPECT_TRUE((frame.lights[5].illuminance == lease->lights[5].illuminance).all());
+  EXPECT_EQ(frame.lights[5].predicted_error, lease->lights[5].predicted_error);
+  EXPECT_GT(frame.lights[5].predicted_error, 0);
   EXPECT_TRUE((frame.light_set().total_illuminance == lease->total_illuminance).all());
 }
 

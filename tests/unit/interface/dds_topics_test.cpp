@@ -55,7 +55,8 @@ LightFrame example_lights(std::uint64_t number, std::size_t count = 3) {
     frame.lights.push_back({.direction = Vec3f(std::sin(angle) * 0.6f, 0.8f, std::cos(angle) * 0.6f),
                             .illuminance = {10 + angle, 20, 30},
                             .parent = static_cast<std::int32_t>(i) - 1,
-                            .id = static_cast<std::uint32_t>(7 * i)});
+                            .id = static_cast<std::uint32_t>(7 * i),
+                            .predicted_error = i == 0 ? 0 : 0.3f / angle});
   }
   return frame;
 }
@@ -80,6 +81,7 @@ void expect_same(const LightFrame& a, const LightFrame& b) {
     EXPECT_TRUE((a.lights[i].illuminance == b.lights[i].illuminance).all());
     EXPECT_EQ(a.lights[i].parent, b.lights[i].parent);
     EXPECT_EQ(a.lights[i].id, b.lights[i].id);
+    EXPECT_EQ(a.lights[i].predicted_error, b.lights[i].predicted_error);
   }
 }
 

@@ -20,7 +20,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // A good frame of two lights as a stranger would send it; the tests spoil one thing each.
 struct Lights {
-  lightwell_Light lights[2] = {{{0, 1, 0}, {1, 2, 3}, 1, -1}, {{1, 0, 0}, {1, 2, 3}, 2, 0}};
+  lightwell_Light lights[2] = {{{0, 1, 0}, {1, 2, 3}, 1, -1, 0.5f}, {{1, 0, 0}, {1, 2, 3}, 2, 0, 0}};
   float harmonics[75] = {1, 2, 3};
   lightwell_LightFrame frame{};
   Lights() {
@@ -60,7 +60,9 @@ TEST(DdsWire, GoodMessagesOfAStrangerAreRead) {
   LightFrame lights;
   EXPECT_EQ(from_wire(Lights().frame, lights), "");
   EXPECT_EQ(lights.header.probe, "stranger");
-  EXPECT_EQ(lights.lights.size(), 2u);
+  ASSERT_EQ(lights.lights.size(), 2u);
+  EXPECT_EQ(lights.lights[0].predicted_error, 0.5f);
+  EXPECT_EQ(lights.lights[1].predicted_error, 0);  // not said, as by a writer that does not know of it
   ASSERT_EQ(lights.harmonics.size(), 25u);
   EXPECT_TRUE((lights.harmonics[0] == Rgb(1, 2, 3)).all());
   Lights older;  // whose writer knows no harmonics
@@ -88,6 +90,9 @@ TEST(DdsWire, MalformedLightsAreRefusedAndLeaveTheMessageAlone) {
       [](Lights& l) { l.lights[0].parent = 0; },
       [](Lights& l) { l.lights[1].parent = 1; },
       [](Lights& l) { l.lights[1].parent = -1; },
+      [](Lights& l) { l.lights[1].predicted_error = kNan; },
+      [](Lights& l) { l.lights[1].predicted_error = kInfinity; },
+      [](Lights& l) { l.lights[1].predicted_error = -1e-3f; },
       [](Lights& l) { l.frame.ambient[0] = kNan; },
       [](Lights& l) { l.frame.header.total_illuminance[0] = -1; },
       [](Lights& l) { l.frame.header.measured_part = 1.5f; },
