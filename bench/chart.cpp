@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "bench/xml_text.h"
+
 namespace lightwell::bench {
 namespace {
 
@@ -29,13 +31,6 @@ std::string at(double v) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1f", v);
   return text;
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-  return out;
 }
 
 struct Axis {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/suite.h"
+#include "bench/xml_text.h"
 
 namespace lightwell::bench {
 namespace {
@@ -34,13 +35,6 @@ std::string number(double v) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", v);
   return text;
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-  return out;
 }
 
 // A line's width in the plot's sans-serif face of 12 px, from above.

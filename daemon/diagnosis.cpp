@@ -26,6 +26,7 @@
 #include "interface/host_port.h"
 #include "interface/http_client.h"
 #include "lighting/frame_format.h"
+#include "lighting/instruction_set.h"
 
 namespace lightwell {
 namespace {
@@ -177,7 +178,7 @@ Finding real_time() {
 Finding processor() {
   const std::string cores = std::to_string(std::thread::hardware_concurrency()) + " cores, ";
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return {"processor", Verdict::ok, cores + "AVX2", ""};
+  if (processor_has(InstructionSet::avx2)) return {"processor", Verdict::ok, cores + "AVX2", ""};
   return {"processor", Verdict::warn, cores + "no AVX2: frames take about twice as long",
           "use a processor from 2013 or later"};
 #elif defined(__aarch64__)

@@ -5,13 +5,19 @@
 namespace lightwell {
 namespace {
 
-void fill_header(const Snapshot& snapshot, FrameHeader& header) {
+// Which frame it was, and when: what both kinds of snapshot say.
+template <class AnySnapshot>
+void fill_frame(const AnySnapshot& snapshot, FrameHeader& header) {
   header.number = snapshot.number;
   header.sequence = snapshot.sequence;
   header.capture_mono_ns = snapshot.capture_mono_ns;
   header.capture_utc_ns = snapshot.capture_utc_ns;
   header.publish_mono_ns = snapshot.publish_mono_ns;
   header.calibration_id = snapshot.calibration_id.data();
+}
+
+void fill_header(const Snapshot& snapshot, FrameHeader& header) {
+  fill_frame(snapshot, header);
   header.coverage = snapshot.coverage;
   header.measured_part = snapshot.map.coverage;
   header.total_illuminance = snapshot.total_illuminance;
@@ -48,12 +54,7 @@ void fill_message(const FitSnapshot& snapshot, FitFrame& message) {
   const FewLightsFit& fit = snapshot.fit;
   const LightSet set = light_set(fit);
   FrameHeader& header = message.header;
-  header.number = snapshot.number;
-  header.sequence = snapshot.sequence;
-  header.capture_mono_ns = snapshot.capture_mono_ns;
-  header.capture_utc_ns = snapshot.capture_utc_ns;
-  header.publish_mono_ns = snapshot.publish_mono_ns;
-  header.calibration_id = snapshot.calibration_id.data();
+  fill_frame(snapshot, header);
   header.coverage = set.coverage;
   header.measured_part = snapshot.measured_part;
   header.total_illuminance = set.total_illuminance;

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
+#include "lighting/instruction_set.h"
 #include "lighting/radiometer.h"
 #include "lighting/radiometer/kernel.h"
 
@@ -20,9 +21,9 @@ const Kernels* kernels(Isa isa) {
       return &kScalarKernels;
 #if defined(__x86_64__)
     case Isa::simd128:
-      return __builtin_cpu_supports("sse4.1") ? &kSimd128Kernels : nullptr;
+      return processor_has(InstructionSet::sse41) ? &kSimd128Kernels : nullptr;
     case Isa::avx2:
-      return __builtin_cpu_supports("avx2") ? &kAvx2Kernels : nullptr;
+      return processor_has(InstructionSet::avx2) ? &kAvx2Kernels : nullptr;
 #elif defined(__aarch64__)
     case Isa::neon:  // every arm64 processor has it
       return &kNeonKernels;

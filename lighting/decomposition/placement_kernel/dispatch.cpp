@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/decomposition/placement_kernel/kernel.h"
+#include "lighting/instruction_set.h"
 
 namespace lightwell::placement_kernel {
 
@@ -8,7 +9,8 @@ namespace lightwell::placement_kernel {
 extern const Kernels kAvx2Kernels;
 
 const Kernels* avx2_kernels() {
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? &kAvx2Kernels : nullptr;
+  const bool runs = processor_has(InstructionSet::avx2) && processor_has(InstructionSet::fma);
+  return runs ? &kAvx2Kernels : nullptr;
 }
 #else
 const Kernels* avx2_kernels() {

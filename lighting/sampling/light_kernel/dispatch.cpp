@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
+#include "lighting/instruction_set.h"
 #include "lighting/sampling/light_kernel/kernel.h"
 
 namespace lightwell::light_kernel {
@@ -8,7 +9,7 @@ namespace lightwell::light_kernel {
 extern const Kernels kAvx2Kernels;
 
 const Kernels* avx2_kernels() {
-  return __builtin_cpu_supports("avx2") ? &kAvx2Kernels : nullptr;
+  return processor_has(InstructionSet::avx2) ? &kAvx2Kernels : nullptr;
 }
 #else
 const Kernels* avx2_kernels() {
