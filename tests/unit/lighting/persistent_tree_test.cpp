@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <random>
 #include <vector>
@@ -101,6 +102,77 @@ TEST(PersistentTree, KeepsItsOrderWhereANewOneWouldNot) {
   }
   EXPECT_LE(changes, 5);
   EXPECT_GE(changes_anew, 40);  // 2 % of noise decides between nearly equal divisions
+}
+
+// ½ δᵀ k δ of δ = the group's lights − one light of their power at their mean, pair by pair.
+double cost_of_one_for_all(const Scene& scene, const std::vector<std::size_t>& group) {
+  Vec3d moment = Vec3d::Zero();
+  double power = 0;
+  for (const std::size_t i : group) {
+    moment += scene.powers[i] * scene.directions[i];
+    power += scene.powers[i];
+  }
+  if (!(power > 0)) return 0;
+  std::vector<Vec3d> places = {moment.normalized()};
+  std::vector<double> delta = {-power};
+  for (const std::size_t i : group) {
+    places.push_back(scene.directions[i]);
+    delta.push_back(scene.powers[i]);
+  }
+  double form = 0;
+  for (std::size_t a = 0; a < places.size(); ++a)
+    for (std::size_t b = 0; b < places.size(); ++b)
+      form += delta[a] * delta[b] * error_kernel(places[a], places[b]);
+  return form / 2;
+}
+
+// Each light that is left out belongs to the group of the entry among the first n that its parents lead to.
+double cost_of_the_first(std::size_t n, const PersistentTree& tree, const Scene& scene) {
+  const auto order = tree.order();
+  std::vector<std::vector<std::size_t>> groups(n);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    std::size_t at = i;
+    while (at >= n) at = static_cast<std::size_t>(order[at].parent);
+    groups[at].push_back(static_cast<std::size_t>(order[i].light));
+  }
+  double cost = 0;
+  for (const auto& group : groups) cost += cost_of_one_for_all(scene, group);
+  return cost;
+}
+
+void expect_costs_by_brute_force(const PersistentTree& tree, const Scene& scene) {
+  const auto costs = tree.costs();
+  ASSERT_EQ(costs.size(), scene.directions.size());
+  EXPECT_EQ(costs[0], 0);
+  const double power = std::accumulate(scene.powers.begin(), scene.powers.end(), 0.0);
+  double left_out = 0;
+  for (std::size_t n = costs.size(); n > 0; --n) {
+    // the forms are differences of terms of about 10 · power²
+    EXPECT_NEAR(left_out, cost_of_the_first(n, tree, scene), 1e-12 * power * power) << "the first " << n;
+    left_out += costs[n - 1];
+  }
+}
+
+TEST(PersistentTree, CostsAreWhatTheLightsThatAreLeftOutAddToTheError) {
+  for (const int n : {1, 2, 3, 17, 64}) {
+    SCOPED_TRACE(n);
+    Scene scene(n, 40 + static_cast<unsigned>(n));
+    PersistentTree tree(n);
+    tree.build(scene.lights());
+    expect_costs_by_brute_force(tree, scene);
+    std::mt19937 random(7);
+    const auto places = random_directions(50, 9, true);
+    for (std::size_t frame = 0; frame < places.size(); ++frame) {
+      const int light = static_cast<int>(random() % static_cast<unsigned>(n));
+      scene.directions[static_cast<std::size_t>(light)] = places[frame];
+      scene.place(light);
+      // some fade, some go out, some come back
+      for (double& power : scene.powers) power *= random() % 9 == 0 ? 0 : 0.9;
+      scene.powers[random() % static_cast<unsigned>(n)] += 0.1;
+      tree.follow(scene.lights(), std::array{light});
+      if (frame % 10 == 9) expect_costs_by_brute_force(tree, scene);
+    }
+  }
 }
 
 TEST(PersistentTree, FirstJoinsThePairThatCostsLeast) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "lighting/decomposition/atoms.h"
@@ -159,6 +160,95 @@ TEST(PlacementKernels, MatricesOfAnySize) {
       }
     }
   }
+}
+
+// Columns of a place's exchange with each light; rows are padded to fours by lights that are 0 and priceless.
+struct Exchange {
+  std::vector<double> by_inverse, step, inverse_pivot, price;
+  double residual = 0.3, complement = 0.7;
+  Exchange(int lights, unsigned seed) {
+    const auto padded = static_cast<std::size_t>((lights + 3) / 4 * 4);
+    for (auto* column : {&by_inverse, &step, &inverse_pivot, &price}) column->assign(padded, 0);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (std::size_t i = 0; i < padded; ++i) {
+      price[i] = std::numeric_limits<double>::infinity();
+      if (i >= static_cast<std::size_t>(lights)) continue;
+      by_inverse[i] = uniform(random);
+      step[i] = uniform(random);
+      inverse_pivot[i] = 0.1 + std::abs(uniform(random));
+      price[i] = 0.1 * std::abs(uniform(random));
+    }
+  }
+  [[nodiscard]] double net(std::size_t i) const {
+    const double h = by_inverse[i];
+    const double r = residual + h * step[i];
+    return r > 0 ? r * r / (complement + h * h * inverse_pivot[i]) - price[i]
+                 : -std::numeric_limits<double>::infinity();
+  }
+  int best(const Kernels& kernels, double* least) const {
+    return kernels.best_to_leave(by_inverse.data(), step.data(), inverse_pivot.data(), price.data(),
+                                 static_cast<int>(price.size()), residual, complement, least);
+  }
+};
+
+TEST(PlacementKernels, BestToLeavePaysMost) {
+  for (const Kernels* kernels : all_kernels())
+    for (const int lights : {1, 2, 3, 4, 5, 7, 8, 17, 64, 127})
+      for (unsigned seed = 0; seed < 20; ++seed) {
+        const Exchange exchange(lights, seed);
+        double most = -1, least = most;
+        int expected = -1;
+        for (int i = 0; i < lights; ++i) {
+          const double net = exchange.net(static_cast<std::size_t>(i));
+          if (net <= most) continue;
+          most = net;
+          expected = i;
+        }
+        EXPECT_EQ(exchange.best(*kernels, &least), expected) << lights << " " << seed;
+        EXPECT_NEAR(least, most, 1e-14);  // fused products round once less
+      }
+}
+
+TEST(PlacementKernels, NobodyLeavesWhereNobodyPays) {
+  for (const Kernels* kernels : all_kernels()) {
+    Exchange exchange(13, 3);
+    double most = 0;
+    for (std::size_t i = 0; i < 13; ++i) most = std::max(most, exchange.net(i));
+    double least = most + 1e-12;
+    EXPECT_EQ(exchange.best(*kernels, &least), -1);  // not above what must be reached
+    EXPECT_EQ(least, most + 1e-12);
+    exchange.residual = -2;  // |h t| < 1: from each the place would take light
+    least = 0;
+    EXPECT_EQ(exchange.best(*kernels, &least), -1);
+    EXPECT_EQ(least, 0);
+    exchange.residual = 0.3;
+    exchange.price.assign(16, std::numeric_limits<double>::infinity());  // all have just come
+    EXPECT_EQ(exchange.best(*kernels, &least), -1);
+    EXPECT_EQ(least, 0);
+  }
+}
+
+// Which of equals leaves may not hang on the machine: the first.
+TEST(PlacementKernels, OfEqualsTheFirstLeaves) {
+  for (const Kernels* kernels : all_kernels())
+    for (int first = 0; first < 16; ++first)
+      for (int second = first + 1; second < 16; ++second) {
+        Exchange exchange(16, 5);
+        double most = 0;
+        for (std::size_t i = 0; i < 16; ++i) most = std::max(most, exchange.net(i));
+        for (const auto i : {static_cast<std::size_t>(first), static_cast<std::size_t>(second)}) {
+          exchange.by_inverse[i] = 0.5;  // halves and quarters: no rounding on any machine
+          exchange.step[i] = 0.5;
+          exchange.inverse_pivot[i] = 1;
+          exchange.price[i] = -4;
+        }
+        exchange.residual = 0.25;
+        exchange.complement = 0.75;
+        double least = most;
+        EXPECT_EQ(exchange.best(*kernels, &least), first) << second;
+        EXPECT_EQ(least, 4.25);
+      }
 }
 
 TEST(PlacementKernels, RingsCountWhatIsNotLightAsNone) {
