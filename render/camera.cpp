@@ -79,11 +79,18 @@ SceneCamera fitted_camera(const Scene& scene) {
   return camera;
 }
 
-Orbit::Orbit(const SceneCamera& start, const Scene& scene) : camera_(start) {
+Orbit::Orbit(const SceneCamera& start, const Scene& scene) {
   const Box box = bounds(scene);
   const Vec3f eye = start.world_from_camera.col(3).head<3>();
   const Vec3f back = start.world_from_camera.col(2).head<3>();
   distance_ = std::max((eye - box.centre()).dot(back), box.radius() / 100);
+  start_at(start);
+}
+
+void Orbit::start_at(const SceneCamera& camera) {
+  camera_ = camera;
+  const Vec3f eye = camera.world_from_camera.col(3).head<3>();
+  const Vec3f back = camera.world_from_camera.col(2).head<3>();
   target_ = eye - distance_ * back;
   azimuth_rad_ = std::atan2(back.x(), back.z());
   elevation_rad_ = std::asin(std::clamp(back.y(), -1.0f, 1.0f));

@@ -28,6 +28,8 @@ class Orbit {
  public:
   // Starts exactly at the given camera; the target is the point of its axis nearest to the scene's centre.
   Orbit(const SceneCamera& start, const Scene& scene);
+  // Stands exactly at this camera; the target stays as far away as it was.
+  void start_at(const SceneCamera& camera);
   void turn(float right_rad, float up_rad);
   void zoom(float factor);
   [[nodiscard]] const SceneCamera& camera() const { return camera_; }

@@ -6,21 +6,17 @@
 #include <span>
 #include <vector>
 
+#include "render/bounding_sphere.h"
 #include "render/scene.h"
 
 namespace lightwell::render {
 
-struct Sphere {
-  Vec3f centre = Vec3f::Zero();
-  float radius = 0;  // 0: empty
-};
-
-// What casts shadows, prepared for shadow maps. Vertices of equal position are welded.
+// What casts shadows, prepared for shadow maps. Vertices of equal position are welded, primitive by primitive.
 //
 // A flat primitive with the whole scene on its front side (a floor, a wall of a room) supports the scene. It
 // cannot block a light in front of it, and blocks everything else from a light behind it. So maps never have
 // to reach over it: they fit the objects, and supports are drawn into the maps of lights behind them, nearer
-// than everything.
+// than everything. What moves is no support, and may sink into one to its middle.
 struct Casters {
   std::vector<Vec3f> positions;
   // Three runs: closed meshes (every edge is shared by two triangles that run along it in opposite
@@ -34,8 +30,36 @@ struct Casters {
   Sphere objects;                // bounds closed and open
   Sphere scene;                  // bounds all but the supports, casting or not
 
+  // A primitive that casts, in the order of the runs.
+  struct Part {
+    std::size_t primitive = 0;  // of the scene
+    std::uint32_t first_index = 0;
+    std::uint32_t index_count = 0;
+    std::uint32_t first_position = 0;
+    std::uint32_t position_count = 0;
+    Sphere bounds;  // of the primitive as it is seen
+    // Of the last move(): whether the part moved, and where it was.
+    bool moved = false;
+    Sphere bounds_before;
+  };
+  std::vector<Part> parts;
+
+  // Of a scene that moves: the vertex that each position is, and what the spheres bound: a primitive each, first those
+  // that cast.
+  std::vector<std::uint32_t> vertices;
+  struct Body {
+    std::size_t primitive = 0;
+    bool casts = true;
+    std::vector<Vec3f> positions;
+    std::vector<std::uint32_t> vertices;
+  };
+  std::vector<Body> bodies;
+
   // True where the light is behind a support.
   [[nodiscard]] bool needs_supports(const Vec3f& to_light) const;
+  // Follows these primitives of the scene that this was made of; the spheres become what they would be of the scene as
+  // it now stands. Triangles stay those found at time 0.
+  void move(const Scene& scene, std::span<const std::size_t> moved);
 };
 
 // Of a texel: how far simplified casters may be from those of the scene. A quarter is not seen among the 2×2
@@ -43,10 +67,8 @@ struct Casters {
 inline constexpr float kSimplifiedTexels = 0.25f;
 
 // map_size: texels a side of the shadow maps they are drawn into; the objects are simplified by at most
-// kSimplifiedTexels of them. 0: every triangle of the scene. Bounds and supports are the scene's either way.
+// kSimplifiedTexels of them, what bends or grows in nine poses of its animation. 0: every triangle of the scene.
+// Bounds and supports are the scene's either way.
 Casters find_casters(const Scene& scene, int map_size = 0);
-
-// Within 1 % of the smallest (Bădoiu and Clarkson 2003); contains every point.
-Sphere bounding_sphere(std::span<const Vec3f> points);
 
 }  // namespace lightwell::render

@@ -67,20 +67,21 @@ Result<GBuffer> GBuffer::create(const Scene& scene, const Casters& casters) {
   g.textures_.push_back(upload({1, 1, {255, 255, 255, 255}}, GL_RGBA8));
   g.materials_ = upload_materials(scene.materials);
   const GLuint white = g.textures_.back().id();
-  const auto texture = [&](int index, int kind) {
-    return index < 0 ? white : g.textures_[static_cast<std::size_t>(index * 2 + kind)].id();
+  const auto texture = [&](const TextureUse& use, int kind) {
+    return use ? g.textures_[static_cast<std::size_t>(use.texture * 2 + kind)].id() : white;
   };
   for (std::size_t i = 0; i < scene.primitives.size(); ++i) {
     const Primitive& p = scene.primitives[i];
     const Material& m = scene.materials[static_cast<std::size_t>(p.material)];
     const float in_shadow_map = !p.casts_shadow ? 0.0f : casters.is_support[i] ? 0.5f : 1.0f;
     g.draws_.push_back({p, in_shadow_map, texture(m.base_color_texture, 0),
-                        texture(m.metallic_roughness_texture, 1), m.double_sided});
+                        texture(m.metallic_roughness_texture, 1), m.double_sided || p.turns_inside_out});
   }
   g.vertex_array_ = gl::make_vertex_array();
   glBindVertexArray(g.vertex_array_.id());
   g.vertices_ =
-      gl::make_buffer(GL_ARRAY_BUFFER, scene.vertices.data(), scene.vertices.size() * sizeof(Vertex));
+      gl::make_buffer(GL_ARRAY_BUFFER, scene.vertices.data(), scene.vertices.size() * sizeof(Vertex),
+                      scene.rig.moves() ? GL_DYNAMIC_DRAW : GL_STATIC_DRAW);
   const auto attribute = [](GLuint index, GLint components, std::size_t offset) {
     glEnableVertexAttribArray(index);
     glVertexAttribPointer(index, components, GL_FLOAT, GL_FALSE, sizeof(Vertex),
@@ -93,6 +94,16 @@ Result<GBuffer> GBuffer::create(const Scene& scene, const Casters& casters) {
                                scene.indices.size() * sizeof(scene.indices[0]));
   glBindVertexArray(0);
   return g;
+}
+
+void GBuffer::move(const Scene& scene, std::span<const std::size_t> moved) {
+  glBindBuffer(GL_ARRAY_BUFFER, vertices_.id());
+  for (const std::size_t i : moved) {
+    const Primitive& p = scene.primitives[i];
+    glBufferSubData(GL_ARRAY_BUFFER, static_cast<GLintptr>(p.first_vertex * sizeof(Vertex)),
+                    static_cast<GLsizeiptr>(p.vertex_count * sizeof(Vertex)),
+                    &scene.vertices[p.first_vertex]);
+  }
 }
 
 Status GBuffer::resize(int width, int height) {

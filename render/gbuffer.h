@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "render/camera.h"
@@ -15,6 +16,8 @@ namespace lightwell::render {
 class GBuffer {
  public:
   static Result<GBuffer> create(const Scene& scene, const Casters& casters);
+  // Takes the vertices of these primitives anew from the scene it was made of.
+  void move(const Scene& scene, std::span<const std::size_t> moved);
   Status resize(int width, int height);
   void draw(const View& view);
 

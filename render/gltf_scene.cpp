@@ -2,71 +2,72 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/gltf_scene.h"
 
-#include <tiny_gltf.h>
-
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <limits>
+#include <new>
 #include <set>
 
 #include "interface/atomic_file.h"
-#include "render/gltf_accessor.h"
+#include "render/gltf_materials.h"
+#include "render/gltf_mesh.h"
+#include "render/gltf_rig.h"
+#include "render/gltf_values.h"
+#include "render/scene_motion.h"
 
 namespace lightwell::render {
 namespace {
 
-using tinygltf::Value;
+using namespace gltf;  // NOLINT(google-build-using-namespace)
 
 // Deeper than any real scene; a cycle of nodes stops here too.
 constexpr int kMaxDepth = 256;
-
-const Value* member(const Value& object, const char* key) {
-  return object.IsObject() && object.Has(key) ? &object.Get(key) : nullptr;
-}
-
-// Thrown inside this file only, caught in read_gltf.
-struct BadScene {
-  std::string message;
-};
-
-float number(const Value& value, const std::string& what, double low, double high) {
-  const double x = value.IsNumber() ? value.GetNumberAsDouble() : std::nan("");
-  if (!(x >= low && x <= high))
-    throw BadScene{what + " must be a number from " + std::to_string(low) + " to " + std::to_string(high)};
-  return static_cast<float>(x);
-}
-
-Rgb colour(const Value& value, const std::string& what) {
-  if (!value.IsArray() || value.ArrayLen() != 3) throw BadScene{what + " must be three numbers"};
-  Rgb c;
-  for (int i = 0; i < 3; ++i) c[i] = number(value.Get(i), what, 0, 1e6);
-  return c;
-}
+// Nodes may show one mesh many times: a small file could ask for any number of triangles.
+constexpr std::size_t kMostTriangles = 100'000'000;
 
 class Reader {
  public:
   explicit Reader(const tinygltf::Model& model) : model_(model) {}
 
-  Scene read() {
-    if (!model_.extensionsRequired.empty())
-      throw BadScene{"requires the extension " + model_.extensionsRequired.front() +
-                     ", which is not supported"};
-    read_textures();
-    for (std::size_t i = 0; i < model_.materials.size(); ++i) scene_.materials.push_back(material(i));
-    const Mat4f identity = Mat4f::Identity();
-    for (const int node : roots()) visit(node, identity, true, 0);
+  Scene read(const std::string& animation) {
+    check_extensions(model_, scene_.remarks);
+    scene_.textures = read_textures(model_);
+    for (std::size_t i = 0; i < model_.materials.size(); ++i) {
+      const MaterialFromFile m = read_material(model_, i, scene_.remarks);
+      scene_.materials.push_back(m.material);
+      uv_sets_.push_back(m.uv_set);
+    }
+    places_.assign(model_.nodes.size(), -1);
+    for (const int node : roots()) visit(node, -1, true, 0);
+    choose_animation(animation);
+    find_what_moves();
+    for (std::size_t i = 0; i < model_.skins.size(); ++i)
+      scene_.rig.skins.push_back(used_skins_.contains(i) ? read_skin(model_, i, places_) : Skin{});
+    pose_ = scene_.rig.tracks.empty() ? rest_pose(scene_.rig) : pose_at(scene_.rig, 0);
+    for (const Use& use : uses_) {
+      const std::string what = "node " + std::to_string(use.source);
+      if (!pose_.world_from_node[use.node].allFinite()) throw BadScene{what + ": transform is not finite"};
+      const tinygltf::Node& node = model_.nodes[use.source];
+      if (node.camera >= 0) add_camera(node, use.node, what);
+      if (node.mesh >= 0) add_mesh(node, use, what);
+    }
     if (scene_.indices.empty()) throw BadScene{"has no triangles with an area"};
+    if (!scene_.rig.moves()) scene_.rig = {};
     return std::move(scene_);
   }
 
  private:
+  // A node that shows something.
+  struct Use {
+    std::size_t source = 0;  // of the file
+    std::size_t node = 0;    // of the rig
+    bool casts = true;
+  };
+
   [[nodiscard]] std::vector<int> roots() const {
     if (!model_.scenes.empty()) {
       const int chosen = model_.defaultScene < 0 ? 0 : model_.defaultScene;
-      if (static_cast<std::size_t>(chosen) >= model_.scenes.size())
-        throw BadScene{"scene " + std::to_string(chosen) + " is out of range"};
-      return model_.scenes[static_cast<std::size_t>(chosen)].nodes;
+      return model_.scenes[index_in(model_.scenes.size(), chosen, "scene")].nodes;
     }
     std::set<int> children;
     for (const auto& node : model_.nodes) children.insert(node.children.begin(), node.children.end());
@@ -76,152 +77,137 @@ class Reader {
     return result;
   }
 
-  void read_textures() {
-    for (std::size_t i = 0; i < model_.textures.size(); ++i) {
-      const int source = model_.textures[i].source;
-      if (source < 0 || static_cast<std::size_t>(source) >= model_.images.size())
-        throw BadScene{"texture " + std::to_string(i) + " names image " + std::to_string(source) +
-                       ", out of range"};
-      const tinygltf::Image& image = model_.images[static_cast<std::size_t>(source)];
-      const auto bytes = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 4;
-      if (image.width <= 0 || image.height <= 0 || image.component != 4 || image.bits != 8 ||
-          image.image.size() != bytes)
-        throw BadScene{"image " + std::to_string(source) + " is not a readable 8 bit picture"};
-      scene_.textures.push_back({image.width, image.height, image.image});
-    }
-  }
-
-  int texture(const tinygltf::TextureInfo& info, const std::string& what) const {
-    if (info.index < 0) return -1;
-    if (static_cast<std::size_t>(info.index) >= scene_.textures.size())
-      throw BadScene{what + " names texture " + std::to_string(info.index) + ", out of range"};
-    if (info.texCoord != 0)
-      throw BadScene{what + " uses TEXCOORD_" + std::to_string(info.texCoord) + ", only 0 is supported"};
-    return info.index;
-  }
-
-  Material material(std::size_t i) const {
-    const tinygltf::Material& source = model_.materials[i];
-    const std::string what = "material " + std::to_string(i);
-    const auto& pbr = source.pbrMetallicRoughness;
-    Material m;
-    if (pbr.baseColorFactor.size() != 4) throw BadScene{what + ": baseColorFactor must be four numbers"};
-    for (int c = 0; c < 3; ++c)
-      m.base_color[c] =
-          number(Value(pbr.baseColorFactor[static_cast<std::size_t>(c)]), what + ": baseColorFactor", 0, 1);
-    m.metallic = number(Value(pbr.metallicFactor), what + ": metallicFactor", 0, 1);
-    m.roughness = number(Value(pbr.roughnessFactor), what + ": roughnessFactor", 0, 1);
-    m.base_color_texture = texture(pbr.baseColorTexture, what + ": baseColorTexture");
-    tinygltf::TextureInfo rough;
-    rough.index = pbr.metallicRoughnessTexture.index;
-    rough.texCoord = pbr.metallicRoughnessTexture.texCoord;
-    m.metallic_roughness_texture = texture(rough, what + ": metallicRoughnessTexture");
-    m.double_sided = source.doubleSided;
-    apply_phong(source.extras, what, m);
-    return m;
-  }
-
-  // True where extras carries a phong model.
-  static bool apply_phong(const Value& extras, const std::string& what, Material& m) {
-    const Value* phong = member(extras, "phong");
-    if (phong == nullptr) return false;
-    if (!phong->IsObject()) throw BadScene{what + ": extras.phong must be an object"};
-    m.model = Material::Model::phong;
-    m.base_color = Rgb::Zero();
-    if (const Value* v = member(*phong, "diffuse"))
-      m.base_color = colour(*v, what + ": extras.phong.diffuse");
-    if (const Value* v = member(*phong, "specular"))
-      m.specular = colour(*v, what + ": extras.phong.specular");
-    if (const Value* v = member(*phong, "exponent"))
-      m.exponent = number(*v, what + ": extras.phong.exponent", 0, 1e6);
-    return true;
-  }
-
-  void visit(int index, const Mat4f& world_from_parent, bool casts, int depth) {
-    if (index < 0 || static_cast<std::size_t>(index) >= model_.nodes.size())
-      throw BadScene{"node " + std::to_string(index) + " is out of range"};
-    if (depth > kMaxDepth)
-      throw BadScene{"nodes are nested deeper than " + std::to_string(kMaxDepth) + " or in a circle"};
-    const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(index)];
+  void visit(int index, int parent, bool casts, int depth) {
+    const std::size_t source = index_in(model_.nodes.size(), index, "node");
     const std::string what = "node " + std::to_string(index);
-    const Mat4f world_from_node = world_from_parent * transform(node, what);
-    if (!world_from_node.allFinite()) throw BadScene{what + ": transform is not finite"};
-    if (const Value* ours = member(node.extras, "lightwell"))
-      if (const Value* flag = member(*ours, "casts_shadow")) {
+    if (depth > kMaxDepth) throw BadScene{what + ": nested deeper than " + std::to_string(kMaxDepth)};
+    if (places_[source] >= 0) throw BadScene{what + " stands in the tree of nodes twice, or in a circle"};
+    const tinygltf::Node& node = model_.nodes[source];
+    if (const tinygltf::Value* ours = member(node.extras, "lightwell"))
+      if (const tinygltf::Value* flag = member(*ours, "casts_shadow")) {
         if (!flag->IsBool()) throw BadScene{what + ": extras.lightwell.casts_shadow must be true or false"};
         casts = flag->Get<bool>();
       }
-    if (node.camera >= 0) add_camera(node, world_from_node, what);
-    if (node.mesh >= 0) add_mesh(node, world_from_node, casts, what);
-    for (const int child : node.children) visit(child, world_from_node, casts, depth + 1);
-  }
-
-  static Mat4f transform(const tinygltf::Node& node, const std::string& what) {
-    const auto check = [&](const std::vector<double>& v, std::size_t n, const char* key) {
-      if (!v.empty() && v.size() != n)
-        throw BadScene{what + ": " + key + " must be " + std::to_string(n) + " numbers"};
-    };
-    check(node.matrix, 16, "matrix");
-    check(node.translation, 3, "translation");
-    check(node.rotation, 4, "rotation");
-    check(node.scale, 3, "scale");
-    if (!node.matrix.empty()) return Eigen::Map<const Eigen::Matrix4d>(node.matrix.data()).cast<float>();
-    Eigen::Affine3d t = Eigen::Affine3d::Identity();
-    if (!node.translation.empty()) t.translate(Eigen::Map<const Vec3d>(node.translation.data()));
-    if (!node.rotation.empty()) {
-      const Eigen::Quaterniond q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-      if (!(q.norm() > 0)) throw BadScene{what + ": rotation must be a unit quaternion"};
-      t.rotate(q.normalized());
+    const auto place = static_cast<int>(scene_.rig.nodes.size());
+    places_[source] = place;
+    RigNode& added = scene_.rig.nodes.emplace_back(read_node(node, what));
+    added.parent = parent;
+    std::size_t targets = 0;
+    if (node.mesh >= 0) {
+      const tinygltf::Mesh& mesh = model_.meshes[index_in(model_.meshes.size(), node.mesh, what + ": mesh")];
+      for (const auto& p : mesh.primitives) targets = std::max(targets, p.targets.size());
+      if (added.weights.empty())
+        for (const double w : mesh.weights)
+          added.weights.push_back(number(w, "mesh " + std::to_string(node.mesh) + ": weights", -1e6, 1e6));
+      if (node.skin >= 0) used_skins_.insert(index_in(model_.skins.size(), node.skin, what + ": skin"));
     }
-    if (!node.scale.empty()) t.scale(Eigen::Map<const Vec3d>(node.scale.data()));
-    return t.matrix().cast<float>();
+    added.weights.resize(targets, 0.0f);
+    weight_counts_.push_back(targets);
+    if (node.camera >= 0 || node.mesh >= 0) uses_.push_back({source, static_cast<std::size_t>(place), casts});
+    for (const int child : node.children) visit(child, place, casts, depth + 1);
   }
 
-  void add_camera(const tinygltf::Node& node, const Mat4f& world_from_node, const std::string& what) {
-    if (static_cast<std::size_t>(node.camera) >= model_.cameras.size())
-      throw BadScene{what + ": camera " + std::to_string(node.camera) + " is out of range"};
-    const tinygltf::Camera& source = model_.cameras[static_cast<std::size_t>(node.camera)];
-    if (source.type != "perspective") return;
+  // The one of that name; without a name the first.
+  void choose_animation(const std::string& name) {
+    std::string names;
+    std::size_t chosen = model_.animations.size();
+    for (std::size_t i = 0; i < model_.animations.size(); ++i) {
+      names += (i == 0 ? "'" : ", '") + model_.animations[i].name + "'";
+      if (chosen == model_.animations.size() && (name.empty() || model_.animations[i].name == name))
+        chosen = i;
+    }
+    if (chosen == model_.animations.size()) {
+      if (name.empty()) return;
+      throw BadScene{names.empty() ? "no animation '" + name + "', the file has none"
+                                   : "no animation '" + name + "', the file has " + names,
+                     ErrorKind::usage};
+    }
+    if (name.empty() && model_.animations.size() > 1)
+      scene_.remarks.push_back("the first of its animations is shown; --animation chooses of " + names);
+    read_animation(model_, chosen, places_, weight_counts_, scene_.rig);
+  }
+
+  // Which nodes an animation moves, themselves or with their parents, and which may mirror at times.
+  void find_what_moves() {
+    const auto& nodes = scene_.rig.nodes;
+    moves_.assign(nodes.size(), false);
+    may_mirror_.assign(nodes.size(), false);
+    weights_move_.assign(nodes.size(), false);
+    for (const Track& track : scene_.rig.tracks) {
+      const bool weights = track.property == Track::Property::weights;
+      (weights ? weights_move_ : moves_)[track.node] = true;
+      if (track.property == Track::Property::scale &&
+          *std::min_element(track.values.begin(), track.values.end()) < 0)
+        may_mirror_[track.node] = true;
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (nodes[i].parent < 0) continue;
+      const auto parent = static_cast<std::size_t>(nodes[i].parent);
+      moves_[i] = moves_[i] || moves_[parent];
+      may_mirror_[i] = may_mirror_[i] || may_mirror_[parent];
+    }
+  }
+
+  void add_camera(const tinygltf::Node& node, std::size_t place, const std::string& what) {
+    const tinygltf::Camera& source =
+        model_.cameras[index_in(model_.cameras.size(), node.camera, what + ": camera")];
+    if (source.type != "perspective") {
+      scene_.remarks.push_back("camera '" + source.name + "' is not a perspective one and is passed by");
+      return;
+    }
     const auto& p = source.perspective;
     SceneCamera camera;
     camera.name = source.name;
     camera.node_name = node.name;
-    camera.yfov_rad = number(Value(p.yfov), "camera '" + source.name + "': yfov", 1e-3, kPi - 1e-3);
-    camera.near_m = number(Value(p.znear), "camera '" + source.name + "': znear", 1e-9, 1e9);
+    camera.yfov_rad = number(p.yfov, "camera '" + source.name + "': yfov", 1e-3, kPi - 1e-3);
+    camera.near_m = number(p.znear, "camera '" + source.name + "': znear", 1e-9, 1e9);
     if (p.zfar > 0) camera.far_m = static_cast<float>(p.zfar);
     if (!(camera.far_m > camera.near_m))
       throw BadScene{"camera '" + source.name + "': zfar must be beyond znear"};
     if (p.aspectRatio != 0)
-      camera.aspect = number(Value(p.aspectRatio), "camera '" + source.name + "': aspectRatio", 1e-3, 1e3);
-    // A camera looks along its node's axes; scale does not zoom (glTF 2.0, 3.10.2).
-    camera.world_from_camera = world_from_node;
-    for (int c = 0; c < 3; ++c) {
-      auto axis = camera.world_from_camera.col(c).head<3>();
-      if (!(axis.norm() > 0)) throw BadScene{what + ": a camera's axes must not be scaled to 0"};
-      axis.normalize();
-    }
+      camera.aspect = number(p.aspectRatio, "camera '" + source.name + "': aspectRatio", 1e-3, 1e3);
+    camera.world_from_camera = camera_at_node(pose_.world_from_node[place]);
+    if (!camera.world_from_camera.allFinite())
+      throw BadScene{what + ": a camera's axes must not be scaled to 0"};
+    if (moves_[place]) scene_.rig.cameras.push_back({scene_.cameras.size(), place});
     scene_.cameras.push_back(camera);
   }
 
-  void add_mesh(const tinygltf::Node& node, const Mat4f& world_from_node, bool casts,
-                const std::string& what) {
-    if (static_cast<std::size_t>(node.mesh) >= model_.meshes.size())
-      throw BadScene{what + ": mesh " + std::to_string(node.mesh) + " is out of range"};
-    const tinygltf::Mesh& mesh = model_.meshes[static_cast<std::size_t>(node.mesh)];
+  void add_mesh(const tinygltf::Node& node, const Use& use, const std::string& what) {
+    const tinygltf::Mesh& mesh = model_.meshes[index_in(model_.meshes.size(), node.mesh, what + ": mesh")];
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
       const std::string name = "mesh " + std::to_string(node.mesh) + " primitive " + std::to_string(p);
       const tinygltf::Primitive& source = mesh.primitives[p];
-      const int mode = source.mode < 0 ? TINYGLTF_MODE_TRIANGLES : source.mode;
-      if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
-        leave_out(name + ": mode " + std::to_string(mode) + " (" + mode_name(mode) + ")");
+      if (const char* mode = mode_without_triangles(source.mode)) {
+        leave_out(name + ": mode " + std::to_string(source.mode) + " (" + mode + ")");
         continue;
       }
       Primitive primitive;
-      primitive.casts_shadow = casts;
+      primitive.casts_shadow = use.casts;
       primitive.material = primitive_material(node, mesh, source, name);
-      add_triangles(source, mode, world_from_node, name, primitive);
-      if (primitive.index_count > 0) scene_.primitives.push_back(primitive);
+      MeshFromFile from_file = read_mesh(model_, source, uv_set(source.material), name);
+      Shape& shape = from_file.shape;
+      shape.node = use.node;
+      if (node.skin >= 0) {
+        shape.skin = node.skin;
+        const Skin& skin = scene_.rig.skins[static_cast<std::size_t>(node.skin)];
+        read_influences(model_, source, skin.joints.size(), name, shape);
+      }
+      primitive.moves = is_moving(shape);
+      primitive.turns_inside_out = shape.skin < 0 && may_mirror_[use.node];
+      add_primitive(std::move(from_file), primitive, name);
     }
+  }
+
+  [[nodiscard]] bool is_moving(const Shape& shape) const {
+    if (!shape.targets.empty() && weights_move_[shape.node]) return true;
+    if (shape.skin < 0) return moves_[shape.node];
+    const auto& joints = scene_.rig.skins[static_cast<std::size_t>(shape.skin)].joints;
+    return std::any_of(joints.begin(), joints.end(), [&](std::size_t joint) { return moves_[joint]; });
+  }
+
+  [[nodiscard]] int uv_set(int material) const {
+    return material < 0 ? 0 : uv_sets_[static_cast<std::size_t>(material)];
   }
 
   // A mesh that several nodes show is said once.
@@ -230,29 +216,12 @@ class Reader {
     if (std::find(list.begin(), list.end(), what) == list.end()) list.push_back(std::move(what));
   }
 
-  static const char* mode_name(int mode) {
-    switch (mode) {
-      case TINYGLTF_MODE_POINTS:
-        return "points";
-      case TINYGLTF_MODE_LINE:
-        return "lines";
-      case TINYGLTF_MODE_LINE_LOOP:
-        return "line loop";
-      case TINYGLTF_MODE_LINE_STRIP:
-        return "line strip";
-      default:
-        return "unknown";
-    }
-  }
-
   // Its own copy of the material where the primitive, mesh or node carries extras.phong.
   int primitive_material(const tinygltf::Node& node, const tinygltf::Mesh& mesh,
                          const tinygltf::Primitive& source, const std::string& what) {
     Material m;
     if (source.material >= 0) {
-      if (static_cast<std::size_t>(source.material) >= model_.materials.size())
-        throw BadScene{what + ": material " + std::to_string(source.material) + " is out of range"};
-      m = scene_.materials[static_cast<std::size_t>(source.material)];
+      m = scene_.materials[index_in(model_.materials.size(), source.material, what + ": material")];
       if (m.model == Material::Model::phong) return source.material;
     }
     const bool phong = apply_phong(source.extras, what, m) || apply_phong(mesh.extras, what, m) ||
@@ -262,107 +231,109 @@ class Reader {
     return static_cast<int>(scene_.materials.size()) - 1;
   }
 
-  static std::vector<float> take(Result<std::vector<float>> values) {
-    if (!values) throw BadScene{values.error().message};
-    return std::move(values).value();
-  }
+  // Drops triangles of no area. A vertex without a normal becomes one for each triangle, which gets the triangle's.
+  void add_primitive(MeshFromFile mesh, Primitive primitive, const std::string& what) {
+    if (mesh.triangles.size() / 3 + scene_.triangles() > kMostTriangles)
+      throw BadScene{"has more than " + std::to_string(kMostTriangles) + " triangles"};
+    Shape& shape = mesh.shape;
+    shape.mirrored = mirrors(scene_.rig, shape, pose_);
+    PosedShape posed;
+    pose_shape(scene_.rig, shape, pose_, posed);
+    for (std::size_t i = 0; i < posed.positions.size(); ++i)
+      if (!posed.positions[i].allFinite())
+        throw BadScene{what + ": vertex " + std::to_string(i) + " is not finite"};
+    // What an animation brings down to nothing at times is there at others.
+    const bool may_open = primitive.moves && (shape.skin >= 0 || !shape.targets.empty());
+    const std::vector<Vec3f>& positions = primitive.moves ? shape.positions : posed.positions;
+    const std::vector<Vec3f>& normals = primitive.moves ? shape.normals : posed.normals;
 
-  void add_triangles(const tinygltf::Primitive& source, int mode, const Mat4f& world_from_node,
-                     const std::string& what, Primitive& primitive) {
-    const auto attribute = [&](const char* name) {
-      const auto found = source.attributes.find(name);
-      return found == source.attributes.end() ? -1 : found->second;
-    };
-    if (attribute("POSITION") < 0) throw BadScene{what + " has no POSITION"};
-    const auto positions = take(read_floats(model_, attribute("POSITION"), 3, what + " POSITION"));
-    std::vector<float> normals;
-    std::vector<float> uvs;
-    if (attribute("NORMAL") >= 0)
-      normals = take(read_floats(model_, attribute("NORMAL"), 3, what + " NORMAL"));
-    if (attribute("TEXCOORD_0") >= 0)
-      uvs = take(read_floats(model_, attribute("TEXCOORD_0"), 2, what + " TEXCOORD_0"));
-    const std::size_t count = positions.size() / 3;
-    if (!normals.empty() && normals.size() != 3 * count)
-      throw BadScene{what + ": NORMAL and POSITION differ in count"};
-    if (!uvs.empty() && uvs.size() != 2 * count)
-      throw BadScene{what + ": TEXCOORD_0 and POSITION differ in count"};
-
-    const Eigen::Matrix3f linear = world_from_node.topLeftCorner<3, 3>();
-    // The cofactor matrix carries normals: it is the inverse transpose times the determinant, and exists for
-    // any scale.
-    Eigen::Matrix3f cofactor;
-    cofactor << linear.col(1).cross(linear.col(2)), linear.col(2).cross(linear.col(0)),
-        linear.col(0).cross(linear.col(1));
-    const bool mirrored = linear.determinant() < 0;
-    if (mirrored) cofactor = -cofactor;
-    std::vector<Vertex> vertices(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      Vertex& v = vertices[i];
-      v.position =
-          linear * Eigen::Map<const Vec3f>(&positions[3 * i]) + world_from_node.topRightCorner<3, 1>();
-      if (!v.position.allFinite()) throw BadScene{what + ": vertex " + std::to_string(i) + " is not finite"};
-      v.normal = normals.empty() ? Vec3f::Zero() : Vec3f(cofactor * Eigen::Map<const Vec3f>(&normals[3 * i]));
-      const float length = v.normal.norm();
-      v.normal = length > 0 && std::isfinite(length) ? Vec3f(v.normal / length) : Vec3f::Zero();
-      if (!uvs.empty()) v.uv = Eigen::Map<const Vec2f>(&uvs[2 * i]);
-    }
-    std::vector<std::uint32_t> order;
-    if (source.indices >= 0) {
-      auto indices = read_indices(model_, source.indices, count, what + " indices");
-      if (!indices) throw BadScene{indices.error().message};
-      order = std::move(indices).value();
-    } else {
-      for (std::size_t i = 0; i < count; ++i) order.push_back(static_cast<std::uint32_t>(i));
-    }
-    append(vertices, triangle_list(order, mode), mirrored, primitive);
-  }
-
-  static std::vector<std::uint32_t> triangle_list(const std::vector<std::uint32_t>& order, int mode) {
-    std::vector<std::uint32_t> list;
-    if (mode == TINYGLTF_MODE_TRIANGLES) {
-      list.assign(order.begin(), order.end() - static_cast<std::ptrdiff_t>(order.size() % 3));
-      return list;
-    }
-    for (std::size_t i = 0; i + 2 < order.size(); ++i) {
-      const bool strip = mode == TINYGLTF_MODE_TRIANGLE_STRIP;
-      const std::uint32_t a = strip ? order[i] : order[0];
-      const std::uint32_t b = strip ? order[i + 1 + i % 2] : order[i + 1];
-      const std::uint32_t c = strip ? order[i + 2 - i % 2] : order[i + 2];
-      list.insert(list.end(), {a, b, c});
-    }
-    return list;
-  }
-
-  // Drops triangles of no area; corners without a normal get the triangle's.
-  void append(const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& list, bool mirrored,
-              Primitive& primitive) {
-    const auto base = static_cast<std::uint32_t>(scene_.vertices.size());
+    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> place(positions.size(), kNone);
+    std::vector<std::uint32_t> origin;
     primitive.first_index = static_cast<std::uint32_t>(scene_.indices.size());
-    scene_.vertices.insert(scene_.vertices.end(), vertices.begin(), vertices.end());
-    for (std::size_t t = 0; t + 2 < list.size(); t += 3) {
-      std::uint32_t corner[3] = {list[t], list[t + 1], list[t + 2]};
-      if (mirrored) std::swap(corner[1], corner[2]);
-      const Vec3d a = vertices[corner[0]].position.cast<double>();
-      const Vec3d cross = (vertices[corner[1]].position.cast<double>() - a)
-                              .cross(vertices[corner[2]].position.cast<double>() - a);
-      if (!(cross.norm() > 0)) {
+    primitive.first_vertex = static_cast<std::uint32_t>(scene_.vertices.size());
+    for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
+      std::uint32_t corner[3] = {mesh.triangles[t], mesh.triangles[t + 1], mesh.triangles[t + 2]};
+      if (shape.mirrored) std::swap(corner[1], corner[2]);
+      const bool distinct = corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0];
+      if (!distinct || (!may_open && !has_area(positions, corner))) {
         ++scene_.dropped_triangles;
         continue;
       }
       for (const std::uint32_t c : corner) {
-        if (vertices[c].normal.isZero()) {
-          scene_.indices.push_back(static_cast<std::uint32_t>(scene_.vertices.size()));
-          scene_.vertices.push_back({vertices[c].position, cross.normalized().cast<float>(), vertices[c].uv});
-        } else {
-          scene_.indices.push_back(base + c);
+        const bool flat = normals[c].isZero();
+        if (flat || place[c] == kNone) {
+          place[c] = primitive.first_vertex + static_cast<std::uint32_t>(origin.size());
+          origin.push_back(c);
         }
+        scene_.indices.push_back(place[c]);
       }
     }
     primitive.index_count = static_cast<std::uint32_t>(scene_.indices.size()) - primitive.first_index;
+    primitive.vertex_count = static_cast<std::uint32_t>(origin.size());
+    if (primitive.index_count == 0) return;
+    scene_.vertices.reserve(scene_.vertices.size() + origin.size());
+    for (const std::uint32_t i : origin) {
+      Vertex& v = scene_.vertices.emplace_back();
+      v.position = posed.positions[i];
+      v.normal = posed.normals[i];
+      if (!mesh.uvs.empty()) v.uv = mesh.uvs[i];
+      if (!mesh.colors.empty()) v.color = mesh.colors[i];
+    }
+    fill_flat_normals(scene_, primitive);
+    if (primitive.moves) keep_shape(shape, origin, primitive);
+    scene_.primitives.push_back(primitive);
+  }
+
+  static bool has_area(const std::vector<Vec3f>& positions, const std::uint32_t (&corner)[3]) {
+    const Vec3d a = positions[corner[0]].cast<double>();
+    const Vec3d cross =
+        (positions[corner[1]].cast<double>() - a).cross(positions[corner[2]].cast<double>() - a);
+    return cross.norm() > 0;
+  }
+
+  // The shape with its vertices in the scene's order.
+  void keep_shape(const Shape& source, const std::vector<std::uint32_t>& origin, const Primitive& primitive) {
+    const auto gathered = [&](const auto& from, std::size_t width) {
+      std::remove_cvref_t<decltype(from)> to;
+      if (from.empty()) return to;
+      to.reserve(origin.size() * width);
+      for (const std::uint32_t i : origin)
+        to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(i * width),
+                  from.begin() + static_cast<std::ptrdiff_t>((i + 1) * width));
+      return to;
+    };
+    Shape& shape = scene_.rig.shapes.emplace_back();
+    shape.primitive = scene_.primitives.size();
+    shape.node = source.node;
+    shape.skin = source.skin;
+    shape.mirrored = source.mirrored;
+    shape.first_vertex = primitive.first_vertex;
+    shape.positions = gathered(source.positions, 1);
+    shape.normals = gathered(source.normals, 1);
+    shape.influences = source.influences;
+    shape.joints = gathered(source.joints, source.influences);
+    shape.joint_weights = gathered(source.joint_weights, source.influences);
+    for (const MorphTarget& target : source.targets) {
+      MorphTarget& to = shape.targets.emplace_back();
+      to = {gathered(target.positions, 1), gathered(target.normals, 1)};
+      // Vertices without a normal keep none: it is their triangle's.
+      for (std::size_t i = 0; i < to.normals.size(); ++i)
+        if (shape.normals[i].isZero()) to.normals[i].setZero();
+    }
   }
 
   const tinygltf::Model& model_;
   Scene scene_;
+  Pose pose_;
+  RigPlaces places_;
+  std::vector<Use> uses_;
+  std::vector<int> uv_sets_;
+  std::set<std::size_t> used_skins_;
+  std::vector<std::size_t> weight_counts_;  // a node of the rig, as the next three
+  std::vector<bool> moves_;
+  std::vector<bool> weights_move_;
+  std::vector<bool> may_mirror_;
 };
 
 std::string one_line(std::string text) {
@@ -374,9 +345,9 @@ std::string one_line(std::string text) {
 
 }  // namespace
 
-Result<Scene> read_gltf(const std::filesystem::path& file) {
-  const auto bad = [&](const std::string& why) {
-    return Error{ErrorKind::bad_input, file.string() + ": " + why};
+Result<Scene> read_gltf(const std::filesystem::path& file, const std::string& animation) {
+  const auto bad = [&](const std::string& why, ErrorKind kind = ErrorKind::bad_input) {
+    return Error{kind, file.string() + ": " + why};
   };
   const auto text = read_text_file(file);
   if (!text) return text.error();
@@ -386,6 +357,8 @@ Result<Scene> read_gltf(const std::filesystem::path& file) {
     std::string error;
     std::string warning;
     const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
+    if (text->size() > std::numeric_limits<unsigned int>::max())
+      return bad("is larger than 4294967295 bytes");
     const auto length = static_cast<unsigned int>(text->size());
     const bool binary = text->starts_with("glTF");
     const bool read =
@@ -394,9 +367,11 @@ Result<Scene> read_gltf(const std::filesystem::path& file) {
                                              folder)
                : loader.LoadASCIIFromString(&model, &error, &warning, text->c_str(), length, folder);
     if (!read || !error.empty()) return bad(one_line(error));
-    return Reader(model).read();
+    return Reader(model).read(animation);
   } catch (const BadScene& e) {
-    return bad(e.message);
+    return bad(e.message, e.kind);
+  } catch (const std::bad_alloc&) {
+    return bad("does not fit into this machine's memory", ErrorKind::failed);
   } catch (const std::exception& e) {
     return bad(one_line(e.what()));
   }

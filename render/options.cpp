@@ -93,6 +93,13 @@ Parsed parse_options(int argc, const char* const* argv) {
   app.add_option("--size", size, "picture, WxH")->capture_default_str();
   app.add_option("--camera", options.camera,
                  "camera of the scene, by its name or its node's (default: the first)");
+  app.add_option("--animation", options.animation,
+                 "animation of the scene, by its name (default: the first)");
+  app.add_option(
+         "--scene-rate", options.scene_rate_hz,
+         "frames a second of the scene's time; live and in a window without --frames it is the clock's")
+      ->check(numbers_from(1e-3, 1e6, "0.001 to 1000000 Hz"))
+      ->capture_default_str();
   app.add_option("--samples", options.samples, "samples a pixel; 4 and more antialias")
       ->check(whole_numbers(1, 1024))
       ->capture_default_str();

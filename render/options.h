@@ -31,6 +31,8 @@ struct Options {
   int width = 640;
   int height = 480;
   std::string camera;
+  std::string animation;      // empty: the first
+  double scene_rate_hz = 25;  // frames of the scene's animation a second
   int samples = 1;
   bool background_environment = false;
   ToneMap tone_map = ToneMap::reinhard;

@@ -93,6 +93,13 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   return r;
 }
 
+void Renderer::move(const Scene& scene, std::span<const std::size_t> moved) {
+  casters_.move(scene, moved);
+  if (moved.empty()) return;
+  gbuffer_.move(scene, moved);
+  atlas_.move(casters_);
+}
+
 Status Renderer::resize(int width, int height) {
   if (width == options_.width && height == options_.height) return {};
   options_.width = width;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 
 #include "lighting/lat_long_image.h"
@@ -40,6 +41,8 @@ class Renderer {
   // bad_input: a texture too large for the driver; failed: what the driver cannot do.
   static Result<Renderer> create(const Scene& scene, const RendererOptions& options);
 
+  // Follows these primitives of the scene that it was made of, which moved (SceneMotion::moved).
+  void move(const Scene& scene, std::span<const std::size_t> moved);
   Status resize(int width, int height);
   // Shown where no surface is; row 0 is the zenith. nullptr: nothing, with alpha 0.
   void set_environment(const LatLongImage* image);

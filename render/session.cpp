@@ -16,6 +16,7 @@
 #include "render/gltf_scene.h"
 #include "render/light_source.h"
 #include "render/renderer.h"
+#include "render/scene_motion.h"
 #include "render/statistics.h"
 #include "render/window.h"
 
@@ -39,10 +40,17 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-Result<SceneCamera> choose_camera(const Scene& scene, const Options& options) {
-  if (options.camera.empty() && !scene.cameras.empty()) return scene.cameras.front();
-  for (const SceneCamera& camera : scene.cameras)
-    if (camera.name == options.camera || camera.node_name == options.camera) return camera;
+struct ChosenCamera {
+  SceneCamera camera;
+  std::optional<std::size_t> of_scene;
+};
+
+Result<ChosenCamera> choose_camera(const Scene& scene, const Options& options) {
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+    const SceneCamera& camera = scene.cameras[i];
+    if (options.camera.empty() || camera.name == options.camera || camera.node_name == options.camera)
+      return ChosenCamera{camera, i};
+  }
   if (!options.camera.empty()) {
     std::string names;
     for (const SceneCamera& camera : scene.cameras)
@@ -51,7 +59,7 @@ Result<SceneCamera> choose_camera(const Scene& scene, const Options& options) {
                                        (names.empty() ? ", which has none" : ", which has " + names)};
   }
   say(options.scene.string() + " has no perspective camera; one that sees all of it is used");
-  return fitted_camera(scene);
+  return ChosenCamera{fitted_camera(scene), std::nullopt};
 }
 
 Result<std::unique_ptr<LightSource>> open_lights(const Options& options) {
@@ -90,9 +98,14 @@ bool has_display() {
 
 class Session {
  public:
-  Session(const Options& options, const std::atomic<bool>& stop, const Scene& scene, SceneCamera camera,
+  Session(const Options& options, const std::atomic<bool>& stop, Scene& scene, ChosenCamera camera,
           LightSource& source)
-      : options_(options), stop_(stop), scene_(scene), camera_(std::move(camera)), source_(source) {}
+      : options_(options),
+        stop_(stop),
+        scene_(scene),
+        motion_(scene),
+        camera_(std::move(camera)),
+        source_(source) {}
 
   Status prepare() {
     if (Status s = check_driver(); !s) return s;
@@ -119,7 +132,8 @@ class Session {
       if (!fresh) return fresh.error();
       // Live frames are as many as lights arrive: the same light twice would be the same picture.
       if (!source_.ready() || (options_.live && !*fresh)) continue;
-      if (Status s = render(camera_); !s) return s;
+      if (Status s = move_scene(options_.live); !s) return s;
+      if (Status s = render(camera_.camera); !s) return s;
     }
     if (frame_ == 0 && !stop_)
       return Error{ErrorKind::failed, "no light arrived on DDS domain " + std::to_string(options_.domain)};
@@ -134,8 +148,11 @@ class Session {
       if (!fresh) return fresh.error();
       const bool changed = window.take_changed();
       const auto [width, height] = window.size();
-      if (width > 0 && height > 0 && (*fresh || changed || options_.frames.has_value())) {
+      const bool moves = scene_.rig.moves();
+      if (width > 0 && height > 0 && (*fresh || changed || moves || options_.frames.has_value())) {
         if (Status s = renderer_->resize(width, height); !s) return s;
+        if (Status s = move_scene(options_.live || !options_.frames); !s) return s;
+        if (moves) window.follow(camera_.camera);
         if (Status s = render(window.camera()); !s) return s;
         renderer_->present();
         window.show();
@@ -154,6 +171,17 @@ class Session {
   }
 
  private:
+  // Brings what is animated to the time of the frame that comes: its number's, or the clock's.
+  Status move_scene(bool by_clock) {
+    if (!scene_.rig.moves()) return {};
+    const double time_s = by_clock ? seconds_since(start_) : frame_ / options_.scene_rate_hz;
+    if (Status s = motion_.move_to(time_s); !s)
+      return Error{s.error().kind, options_.scene.string() + ": " + s.error().message};
+    renderer_->move(scene_, motion_.moved());
+    if (camera_.of_scene) camera_.camera = scene_.cameras[*camera_.of_scene];
+    return {};
+  }
+
   Status check_driver() const {
     const int side = Renderer::size_limit();
     if (options_.width > side || options_.height > side)
@@ -229,8 +257,9 @@ class Session {
 
   const Options& options_;
   const std::atomic<bool>& stop_;
-  const Scene& scene_;
-  SceneCamera camera_;
+  Scene& scene_;
+  SceneMotion motion_;
+  ChosenCamera camera_;
   LightSource& source_;
   std::optional<Renderer> renderer_;
   Statistics statistics_;
@@ -244,12 +273,13 @@ class Session {
 
 Status run_session(const Options& options, const std::atomic<bool>& stop) {
   if (Status s = check_outputs(options); !s) return s;
-  auto scene = read_gltf(options.scene);
+  auto scene = read_gltf(options.scene, options.animation);
   if (!scene) return scene.error();
   if (scene->dropped_triangles > 0)
     say(options.scene.string() + ": " + std::to_string(scene->dropped_triangles) +
         " triangles of no area left out");
   for (const std::string& what : scene->left_out) say(options.scene.string() + ": " + what + " left out");
+  for (const std::string& remark : scene->remarks) say(options.scene.string() + ": " + remark);
   auto camera = choose_camera(*scene, options);
   if (!camera) return camera.error();
   auto source = open_lights(options);
@@ -264,7 +294,7 @@ Status run_session(const Options& options, const std::atomic<bool>& stop) {
   const bool has_purpose =
       !options.outputs.empty() || options.frames || options.seconds || !options.stats.empty();
   if (!options.headless && has_display()) {
-    auto window = Window::open(options.width, options.height, Orbit(*camera, *scene));
+    auto window = Window::open(options.width, options.height, Orbit(camera->camera, *scene));
     if (window) return run(window->get());
     if (!has_purpose) return window.error();
     say(window.error().message + "; rendering off-screen");

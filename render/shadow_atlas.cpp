@@ -40,6 +40,15 @@ Result<ShadowAtlas> ShadowAtlas::create(const Casters& casters, int map_size) {
   return atlas;
 }
 
+void ShadowAtlas::move(const Casters& casters) {
+  glBindBuffer(GL_ARRAY_BUFFER, positions_.id());
+  for (const Casters::Part& part : casters.parts)
+    if (part.moved)
+      glBufferSubData(GL_ARRAY_BUFFER, static_cast<GLintptr>(part.first_position * sizeof(Vec3f)),
+                      static_cast<GLsizeiptr>(part.position_count * sizeof(Vec3f)),
+                      &casters.positions[part.first_position]);
+}
+
 int ShadowAtlas::capacity() const {
   const int side = side_limit() / map_size_;
   return std::min(kMaxLightsPerBlock, side * side);

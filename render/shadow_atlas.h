@@ -25,6 +25,8 @@ class ShadowAtlas {
   [[nodiscard]] GLuint texture() const { return texture_.id(); }
   [[nodiscard]] bool empty() const { return closed_count_ + open_count_ + support_count_ == 0; }
 
+  // Follows the parts that moved of the casters that it was made of.
+  void move(const Casters& casters);
   // Draws the maps of rows, at most capacity(), which are the first of buffer.
   Status draw(std::span<const LightRow> rows, GLuint buffer);
 

@@ -34,14 +34,14 @@ Window::Window(GLFWwindow* window, Orbit orbit) : window_(window), orbit_(std::m
       constexpr float kRadiansPerPixel = 0.006f;
       self.orbit_.turn(static_cast<float>(self.last_x_ - x) * kRadiansPerPixel,
                        static_cast<float>(y - self.last_y_) * kRadiansPerPixel);
-      self.changed_ = true;
+      self.changed_ = self.taken_ = true;
     }
     self.last_x_ = x;
     self.last_y_ = y;
   });
   glfwSetScrollCallback(window, [](GLFWwindow* w, double, double dy) {
     owner(w)->orbit_.zoom(static_cast<float>(std::pow(0.9, dy)));
-    owner(w)->changed_ = true;
+    owner(w)->changed_ = owner(w)->taken_ = true;
   });
   glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { owner(w)->changed_ = true; });
   glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { owner(w)->changed_ = true; });
@@ -100,6 +100,10 @@ SceneCamera Window::camera() const {
   SceneCamera camera = orbit_.camera();
   camera.aspect = 0;  // the window's own
   return camera;
+}
+
+void Window::follow(const SceneCamera& camera) {
+  if (!taken_) orbit_.start_at(camera);
 }
 
 void Window::set_title(const std::string& title) {

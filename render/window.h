@@ -31,6 +31,8 @@ class Window {
   // True once after the camera moved or the window changed size or was uncovered.
   [[nodiscard]] bool take_changed();
   [[nodiscard]] SceneCamera camera() const;
+  // The camera stands there, until a user moves it.
+  void follow(const SceneCamera& camera);
   void set_title(const std::string& title);
   [[nodiscard]] GLFWwindow* handle() const { return window_; }
 
@@ -39,6 +41,7 @@ class Window {
   GLFWwindow* window_ = nullptr;
   Orbit orbit_;
   bool changed_ = true;
+  bool taken_ = false;  // a user moved the camera
   double last_x_ = 0;
   double last_y_ = 0;
 };

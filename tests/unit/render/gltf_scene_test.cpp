@@ -5,57 +5,19 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <nlohmann/json.hpp>
 
 #include "interface/atomic_file.h"
-#include "interface/base64.h"
 #include "render/casters.h"
 #include "render/stage.h"
+#include "tests/support/gltf_document.h"
 #include "tests/support/temporary_folder.h"
 
 namespace lightwell::render {
 namespace {
 
 using nlohmann::json;
-
-// A file with one mesh of raw bytes; change its JSON before reading.
-struct Document {
-  std::vector<unsigned char> bytes;
-  json root = {{"asset", {{"version", "2.0"}}},
-               {"scenes", json::array({{{"nodes", json::array({0})}}})},
-               {"nodes", json::array({{{"mesh", 0}}})},
-               {"meshes", json::array({{{"primitives", json::array({{{"attributes", json::object()}}})}}})},
-               {"bufferViews", json::array()},
-               {"accessors", json::array()}};
-
-  template <class T>
-  int add(const std::vector<T>& values, const char* type, int component_type, std::size_t components) {
-    while (bytes.size() % 4 != 0) bytes.push_back(0);
-    const auto* begin = reinterpret_cast<const unsigned char*>(values.data());
-    root["bufferViews"].push_back(
-        {{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(T)}});
-    bytes.insert(bytes.end(), begin, begin + values.size() * sizeof(T));
-    root["accessors"].push_back({{"bufferView", root["bufferViews"].size() - 1},
-                                 {"componentType", component_type},
-                                 {"count", values.size() / components},
-                                 {"type", type}});
-    return static_cast<int>(root["accessors"].size()) - 1;
-  }
-  json& primitive() { return root["meshes"][0]["primitives"][0]; }
-  std::string text() {
-    root["buffers"] = json::array({{{"byteLength", bytes.size()},
-                                    {"uri", "data:application/octet-stream;base64," +
-                                                base64_encode(std::as_bytes(std::span(bytes)))}}});
-    return root.dump();
-  }
-};
-
-// Triangle (0,0,0) (1,0,0) (0,1,0), which faces +Z.
-Document triangle() {
-  Document d;
-  d.primitive()["attributes"]["POSITION"] = d.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 5126, 3);
-  return d;
-}
+using test::Document;
+using test::triangle;
 
 Result<Scene> read(const std::string& text, const char* name = "scene.gltf") {
   const test::TemporaryFolder folder;
@@ -237,7 +199,7 @@ TEST(GltfScene, BadFilesAreRefusedInOneLineThatNamesTheReason) {
   refuse("no POSITION", [](json& r) { r["meshes"][0]["primitives"][0]["attributes"] = {{"NORMAL", 0}}; });
   refuse("out of range", [](json& r) { r["nodes"][0]["mesh"] = 3; });
   refuse("out of range", [](json& r) { r["scenes"][0]["nodes"] = {5}; });
-  refuse("nested", [](json& r) { r["nodes"][0]["children"] = {0}; });
+  refuse("circle", [](json& r) { r["nodes"][0]["children"] = {0}; });
   refuse("material 4", [](json& r) { r["meshes"][0]["primitives"][0]["material"] = 4; });
   refuse("KHR_draco", [](json& r) { r["extensionsRequired"] = {"KHR_draco_mesh_compression"}; });
   refuse("", [](json& r) { r["buffers"][0]["uri"] = "missing.bin"; });
