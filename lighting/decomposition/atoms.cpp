@@ -78,10 +78,11 @@ void Atoms::finish() noexcept {
         solid_angle_sr[i] = 0;
 }
 
-AtomMaker::AtomMaker(const PolarGrid& grid, int lights)
+AtomMaker::AtomMaker(const PolarGrid& grid, int lights, Detail detail)
     : grid_(grid),
-      coarse_share_(1.0 / std::max(1500, 10 * lights)),
-      fine_share_(1.0 / std::max(800, 5 * lights)) {
+      coarse_share_(detail == Detail::frame ? 1.0 / std::max(400, 8 * lights)
+                                            : 1.0 / std::max(1500, 10 * lights)),
+      fine_share_(1.0 / std::max(detail == Detail::frame ? 600 : 800, 5 * lights)) {
   const int rows = std::max(1, static_cast<int>(std::lround(grid.theta_max_rad / (6 * kDegree))));
   for (int row = 0; row <= 2 * rows; ++row) rows_.push_back(edge(0, grid.rings, row, 2 * rows));
   for (int column = 0; column <= kColumns; ++column)

@@ -42,8 +42,10 @@ struct Atoms {
 // blocks give no atom; values that are not finite and positive count as 0.
 class AtomMaker {
  public:
+  // frame: half of the atoms, for half of the time; on captured maps lights then err by 1 % more.
+  enum class Detail { frame, map };
   // lights: as many as the atoms are to place; more of them resolve more
-  AtomMaker(const PolarGrid& grid, int lights);
+  AtomMaker(const PolarGrid& grid, int lights, Detail detail = Detail::map);
   [[nodiscard]] int capacity() const { return capacity_; }
   // atoms: of this capacity at the least
   void make(const PolarMap& map, Atoms& atoms) noexcept;
