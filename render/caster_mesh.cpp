@@ -107,8 +107,9 @@ class Neighbourhood {
       low = low.cwiseMin(positions[i].cast<double>());
       high = high.cwiseMax(positions[i].cast<double>());
     }
-    constexpr double kCells = 64;  // along the longest side: a few triangles in each
-    cell_m_ = std::max(reach_m, (high - low).maxCoeff() / kCells);
+    // Cells along the longest side: a few triangles in each of those that a surface passes, where it has many.
+    const double cells = std::clamp(std::sqrt(static_cast<double>(triangles.size())) / 2, 1.0, 64.0);
+    cell_m_ = std::max(reach_m, (high - low).maxCoeff() / cells);
     for (std::size_t t = 0; t < triangles.size(); t += 3) {
       auto& corners = triangles_.emplace_back();
       for (std::size_t c = 0; c < 3; ++c) corners[c] = positions[triangles[t + c]].cast<double>();
