@@ -226,7 +226,14 @@ RayTracer& RayTracer::operator=(RayTracer&&) noexcept = default;
 RayTracer::~RayTracer() = default;
 
 Result<RayTracer> RayTracer::create(const Scene& scene) {
-  if (!scene.textures.empty()) return Error{ErrorKind::usage, "the ray tracer knows no textures"};
+  const bool plain = scene.textures.empty() &&
+                     std::all_of(scene.vertices.begin(), scene.vertices.end(),
+                                 [](const render::Vertex& v) { return v.color == render::Vertex().color; }) &&
+                     std::all_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) {
+                       return m.alpha_cutoff == 0 && m.emission.maxCoeff() == 0;
+                     });
+  if (!plain)
+    return Error{ErrorKind::usage, "the ray tracer knows no textures, vertex colours, cut-outs and emission"};
   return RayTracer(std::make_unique<Scenes>(scene));
 }
 

@@ -18,7 +18,7 @@ namespace lightwell::pictures {
 // docs/conventions.md and the glTF specification, so that an error in a shader is not repeated.
 class RayTracer {
  public:
-  // The scene must outlive it.    usage: a scene with textures
+  // The scene must outlive it.    usage: a scene with textures, vertex colours, cut-outs or emission
   static Result<RayTracer> create(const render::Scene& scene);
   RayTracer(RayTracer&&) noexcept;
   RayTracer& operator=(RayTracer&&) noexcept;
