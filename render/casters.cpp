@@ -28,7 +28,7 @@ struct MovingPart {
 // Triangles of a primitive by welded corners.
 struct Mesh {
   std::size_t primitive = 0;
-  enum Run { closed, open, support } run = open;
+  enum Run { closed, open, support, cutout } run = open;
   std::vector<Vec3f> positions;
   std::vector<Index> vertices;  // of the scene, a position
   std::vector<Index> triangles;
@@ -207,7 +207,7 @@ void append(const Mesh& mesh, bool with_vertices, Casters& casters) {
   }
   part.position_count = static_cast<Index>(casters.positions.size()) - part.first_position;
   Index* const counts[] = {&casters.closed_count, &casters.open_count, &casters.support_count};
-  *counts[mesh.run] += part.index_count;
+  if (mesh.run != Mesh::cutout) *counts[mesh.run] += part.index_count;
   casters.parts.push_back(part);
 }
 
@@ -270,13 +270,15 @@ Casters find_casters(const Scene& scene, int map_size) {
     const Primitive& primitive = scene.primitives[p];
     if (!primitive.casts_shadow) continue;
     Mesh mesh = weld(scene, p, moving[p].poses);
-    const auto normal = support_normal(mesh, tolerance, scene, moving);
+    const bool has_holes = scene.materials[static_cast<std::size_t>(primitive.material)].alpha_cutoff > 0;
+    const auto normal = has_holes ? std::nullopt : support_normal(mesh, tolerance, scene, moving);
     casters.is_support[p] = normal.has_value();
     if (normal) {
       casters.support_normals.push_back(*normal);
       mesh.run = Mesh::support;
     } else {
       mesh.run = !primitive.turns_inside_out && is_closed(mesh.triangles) ? Mesh::closed : Mesh::open;
+      if (has_holes) mesh.run = Mesh::cutout;
       mesh.bounds = bounding_sphere(mesh.positions);
       casters.bodies.push_back(body_of(mesh, true));
     }
@@ -286,10 +288,15 @@ Casters find_casters(const Scene& scene, int map_size) {
     if (!scene.primitives[p].casts_shadow)
       casters.bodies.push_back(body_of(weld(scene, p, moving[p].poses), false));
   bound(casters);
+  for (Mesh& mesh : meshes) {
+    if (mesh.run != Mesh::cutout) continue;
+    casters.cutouts.push_back(mesh.primitive);
+    mesh.triangles.clear();
+  }
   if (map_size > 0) {
     const float texel_m = 2 * casters.objects.radius / static_cast<float>(map_size);
     for (Mesh& mesh : meshes)
-      if (mesh.run != Mesh::support)
+      if (mesh.run == Mesh::closed || mesh.run == Mesh::open)
         simplify_mesh(mesh, scene, moving[mesh.primitive].poses, kSimplifiedTexels * texel_m);
   }
   std::stable_sort(meshes.begin(), meshes.end(), [](const Mesh& a, const Mesh& b) { return a.run < b.run; });

@@ -43,6 +43,8 @@ struct Casters {
     Sphere bounds_before;
   };
   std::vector<Part> parts;
+  // Primitives with holes, which stand in no run: they are drawn as they are seen. Their parts have no triangles.
+  std::vector<std::size_t> cutouts;
 
   // Of a scene that moves: the vertex that each position is, and what the spheres bound: a primitive each, first those
   // that cast.

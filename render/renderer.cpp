@@ -35,6 +35,13 @@ std::string shading_models(const Scene& scene) {
          "\n#define HAS_METALLIC_ROUGHNESS " + (uses(Material::Model::metallic_roughness) ? "1" : "0") + "\n";
 }
 
+std::string emission_fact(const Scene& scene) {
+  const bool emits = std::any_of(scene.primitives.begin(), scene.primitives.end(), [&](const Primitive& p) {
+    return (scene.materials[static_cast<std::size_t>(p.material)].emission > 0).any();
+  });
+  return std::string("#define HAS_EMISSION ") + (emits ? "1" : "0") + "\n";
+}
+
 // across = 0.5 / radius = kDepthPadding / extent (make_light_rows).
 std::string map_facts(bool nothing_casts, bool simplified) {
   constexpr float kDepthTexels = 0.1f;  // 16 bits of depth, and curvature
@@ -70,16 +77,20 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   if (!gbuffer) return gbuffer.error();
   auto atlas = ShadowAtlas::create(r.casters_, options.shadow_size);
   if (!atlas) return atlas.error();
+  auto cutouts = CutoutCasters::create(scene, r.casters_, *gbuffer);
+  if (!cutouts) return cutouts.error();
+  r.nothing_casts_ = atlas->empty() && cutouts->empty();
   auto tone_mapper = ToneMapper::create();
   if (!tone_mapper) return tone_mapper.error();
-  auto surfaces =
-      gl::make_program("fullscreen_vertex", "shade_fragment",
-                       shading_models(scene) + map_facts(atlas->empty(), options.simplify_casters));
+  auto surfaces = gl::make_program(
+      "fullscreen_vertex", "shade_fragment",
+      shading_models(scene) + emission_fact(scene) + map_facts(r.nothing_casts_, options.simplify_casters));
   if (!surfaces) return surfaces.error();
   auto background = gl::make_program("fullscreen_vertex", "background_fragment");
   if (!background) return background.error();
   r.gbuffer_ = std::move(gbuffer).value();
   r.atlas_ = std::move(atlas).value();
+  r.cutouts_ = std::move(cutouts).value();
   r.tone_mapper_ = std::move(tone_mapper).value();
   r.surfaces_ = std::move(surfaces).value();
   r.background_ = std::move(background).value();
@@ -145,7 +156,7 @@ Status Renderer::render(const LightSet& lights, const SceneCamera& camera, doubl
   times_ = {};
   const std::vector<LightRow> rows = make_light_rows(lights.lights, casters_, options_.shadow_size);
   const std::span<const LightRow> all(rows);
-  shadow_maps_ = atlas_.empty() ? 0 : rows.size();
+  shadow_maps_ = nothing_casts_ ? 0 : rows.size();
   const auto capacity = static_cast<std::size_t>(atlas_.capacity());
   double time = now_ms();
   bool start_sum = true;
@@ -155,8 +166,10 @@ Status Renderer::render(const LightSet& lights, const SceneCamera& camera, doubl
     glBindBuffer(GL_UNIFORM_BUFFER, light_block_.id());
     glBufferSubData(GL_UNIFORM_BUFFER, 0, static_cast<GLsizeiptr>(block.size_bytes()), block.data());
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, light_block_.id());
-    if (!atlas_.empty() && !block.empty())
+    if (!nothing_casts_ && !block.empty()) {
       if (Status s = atlas_.draw(block, light_block_.id()); !s) return s;
+      cutouts_.draw(block, light_block_.id(), atlas_);
+    }
     time = lap(time, times_.shadow_ms);
     for (int sample = 0; sample < options_.samples; ++sample) {
       const View view =
@@ -191,6 +204,7 @@ void Renderer::shade(const View& view, int light_count, const LightSet& lights, 
   surfaces.set_texture("surface_map", 2, gbuffer_.surface());
   surfaces.set_texture("materials", 3, gbuffer_.materials());
   surfaces.set_texture("shadow_maps", 4, atlas_.texture());
+  surfaces.set_texture("emission_map", 5, gbuffer_.emission());
   surfaces.set("light_count", light_count);
   surfaces.set("tiles", static_cast<float>(atlas_.tiles()));
   surfaces.set("objects_centre", casters_.objects.centre.data());

@@ -10,6 +10,7 @@
 #include "lighting/light_set.h"
 #include "render/camera.h"
 #include "render/casters.h"
+#include "render/cutout_casters.h"
 #include "render/gbuffer.h"
 #include "render/picture.h"
 #include "render/shadow_atlas.h"
@@ -76,6 +77,7 @@ class Renderer {
   RendererOptions options_;
   GBuffer gbuffer_;
   ShadowAtlas atlas_;
+  CutoutCasters cutouts_;
   ToneMapper tone_mapper_;
   Casters casters_;
   gl::Program surfaces_;
@@ -88,6 +90,7 @@ class Renderer {
   int current_ = 0;
   PassTimes times_;
   std::size_t shadow_maps_ = 0;
+  bool nothing_casts_ = false;
 };
 
 }  // namespace lightwell::render

@@ -43,7 +43,7 @@ Result<ShadowAtlas> ShadowAtlas::create(const Casters& casters, int map_size) {
 void ShadowAtlas::move(const Casters& casters) {
   glBindBuffer(GL_ARRAY_BUFFER, positions_.id());
   for (const Casters::Part& part : casters.parts)
-    if (part.moved)
+    if (part.moved && part.position_count > 0)
       glBufferSubData(GL_ARRAY_BUFFER, static_cast<GLintptr>(part.first_position * sizeof(Vec3f)),
                       static_cast<GLsizeiptr>(part.position_count * sizeof(Vec3f)),
                       &casters.positions[part.first_position]);
@@ -68,14 +68,18 @@ Status ShadowAtlas::resize(int tiles) {
   return {};
 }
 
+void ShadowAtlas::bind() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+  glViewport(0, 0, tiles_ * map_size_, tiles_ * map_size_);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+}
+
 Status ShadowAtlas::draw(std::span<const LightRow> rows, GLuint buffer) {
   const auto count = static_cast<GLsizei>(rows.size());
   const int tiles = std::max(1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count)))));
   if (Status s = resize(tiles); !s) return s;
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-  glViewport(0, 0, tiles * map_size_, tiles * map_size_);
-  glEnable(GL_DEPTH_TEST);
-  glDepthMask(GL_TRUE);
+  bind();
   glClear(GL_DEPTH_BUFFER_BIT);
   glUseProgram(program_.id());
   glUniform1i(gl::uniform(program_, "tiles"), tiles);

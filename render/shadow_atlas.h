@@ -27,6 +27,8 @@ class ShadowAtlas {
 
   // Follows the parts that moved of the casters that it was made of.
   void move(const Casters& casters);
+  // Makes the whole atlas the place to draw to.
+  void bind() const;
   // Draws the maps of rows, at most capacity(), which are the first of buffer.
   Status draw(std::span<const LightRow> rows, GLuint buffer);
 

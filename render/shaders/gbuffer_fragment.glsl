@@ -1,17 +1,63 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
 // The small G-buffer: position and material number (from 1; 0 is background), then the shading normal as an octahedral
-// pair of 16 bits, three halves of base colour from the texture and the roughness and metallic from theirs, and whether
-// the surface stands in the shadow maps (0 no, 1 yes, 0.5 a support).
+// pair of 16 bits, three halves of base colour from texture and vertex and the roughness and metallic from theirs, and
+// whether the surface stands in the shadow maps (0 no, 1 yes, 0.5 a support); where the scene has such, emitted radiance.
+// HAS_DETAIL: textures, vertex colours, holes.
 in vec3 world_position;
 in vec3 world_normal;
-in vec2 texture_uv;
-uniform sampler2D base_color_map;
-uniform sampler2D metallic_roughness_map;
 uniform float material_number;
 uniform float in_shadow_map;
 layout(location = 0) out vec4 position_material;
 layout(location = 1) out uvec4 surface;
+#if HAS_EMISSION
+layout(location = 2) out vec4 emitted;
+uniform vec3 emission;
+#endif
+
+#if HAS_DETAIL
+in vec2 texture_uv;
+in vec4 vertex_color;
+uniform sampler2D base_color_map;
+uniform sampler2D metallic_roughness_map;
+uniform sampler2D normal_map;
+uniform sampler2D emission_map;
+// From the vertices' coordinates to each texture's: two rows.
+uniform vec3 base_color_uv[2];
+uniform vec3 metallic_roughness_uv[2];
+uniform vec3 normal_uv[2];
+uniform vec3 emission_uv[2];
+uniform float normal_scale;  // 0: no normal map
+uniform float alpha;
+uniform float alpha_cutoff;
+
+vec2 place(vec3 rows[2]) {
+  vec3 uv = vec3(texture_uv, 1.0);
+  return vec2(dot(rows[0], uv), dot(rows[1], uv));
+}
+
+// Tangents from the way that position and texture coordinates change over the picture (Schüler 2013), so that moving
+// meshes need none. n faces the viewer; seen from behind, the map's normals are reversed as a whole (glTF 2.0, 3.9.4).
+vec3 mapped_normal(vec3 n, float side) {
+  vec2 uv = place(normal_uv);
+  vec3 map = texture(normal_map, uv).xyz * 2.0 - 1.0;
+  vec3 across_y = cross(dFdy(world_position), n);
+  vec3 across_x = cross(n, dFdx(world_position));
+  vec2 uv_dx = dFdx(uv);
+  vec2 uv_dy = dFdy(uv);
+  vec3 along_u = across_y * uv_dx.x + across_x * uv_dy.x;
+  vec3 along_v = across_y * uv_dx.y + across_x * uv_dy.y;
+  // Lengths that are small, as of a scene of micrometres, must not vanish when squared.
+  float longest = max(max(abs(along_u.x), abs(along_u.y)), abs(along_u.z));
+  longest = max(longest, max(max(abs(along_v.x), abs(along_v.y)), abs(along_v.z)));
+  if (!(longest > 0.0)) return n;  // texture coordinates that stand still
+  along_u /= longest;
+  along_v /= longest;
+  float size = side * normal_scale * inversesqrt(max(dot(along_u, along_u), dot(along_v, along_v)));
+  // Green is up, v points down.
+  return normalize(along_u * (size * map.x) - along_v * (size * map.y) + n * map.z);
+}
+#endif
 
 // Cigolle et al. 2014.
 vec2 octahedral(vec3 n) {
@@ -21,10 +67,27 @@ vec2 octahedral(vec3 n) {
 }
 
 void main() {
-  vec3 n = normalize(world_normal) * (gl_FrontFacing ? 1.0 : -1.0);
-  vec3 tint = texture(base_color_map, texture_uv).rgb;
-  vec4 rough = texture(metallic_roughness_map, texture_uv);
+  float side = gl_FrontFacing ? 1.0 : -1.0;
+  vec3 n = normalize(world_normal) * side;
+  vec3 tint = vec3(1.0);
+  vec2 rough_metallic = vec2(1.0);
+#if HAS_DETAIL
+  vec4 base = texture(base_color_map, place(base_color_uv)) * vertex_color;
+  rough_metallic = texture(metallic_roughness_map, place(metallic_roughness_uv)).gb;
+  vec3 glow = texture(emission_map, place(emission_uv)).rgb;
+  if (normal_scale != 0.0) n = mapped_normal(n, side);
+  // Last, for derivatives are taken with the neighbours that are holes.
+  if (base.a * alpha < alpha_cutoff) discard;
+  tint = base.rgb;
+#endif
   position_material = vec4(world_position, material_number);
-  surface = uvec4(packSnorm2x16(octahedral(n)), packHalf2x16(tint.rg), packHalf2x16(vec2(tint.b, rough.g)),
-                  packHalf2x16(vec2(rough.b, in_shadow_map)));
+  surface = uvec4(packSnorm2x16(octahedral(n)), packHalf2x16(tint.rg), packHalf2x16(vec2(tint.b, rough_metallic.x)),
+                  packHalf2x16(vec2(rough_metallic.y, in_shadow_map)));
+#if HAS_EMISSION
+  vec3 light = emission;
+#if HAS_DETAIL
+  light *= glow;
+#endif
+  emitted = vec4(min(light, 65504.0), 0.0);  // the most a half holds
+#endif
 }

@@ -19,6 +19,9 @@ uniform float coverage;     // once a sample, as ambient light
 uniform int start_sum;      // so_far is not there yet
 uniform vec3 eye;
 uniform vec3 ambient;
+#if HAS_EMISSION
+uniform sampler2D emission_map;
+#endif
 out vec4 radiance;
 
 const float kPi = 3.14159265358979;
@@ -133,6 +136,9 @@ void main() {
   vec2 tile = vec2(0.0);
   // Ambient light reaches every surface: albedo times radiance. A lobe's albedo is taken at normal incidence.
   vec3 sum = (s.diffuse + s.specular) * ambient * coverage;
+#if HAS_EMISSION
+  sum += texelFetch(emission_map, at, 0).rgb * coverage;
+#endif
   for (int i = 0; i < count; ++i) {
     vec4 light = lights[i].illuminance;
     vec3 to_light = lights[i].w.xyz * -abs(light.w);

@@ -5,10 +5,20 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 u;  // of the instance's light
 layout(location = 2) in vec4 v;
 layout(location = 3) in vec4 w;
+#ifdef CUTOUT
+layout(location = 4) in vec2 uv;
+layout(location = 5) in vec4 color;
+out vec2 texture_uv;
+out float vertex_alpha;
+#endif
 uniform int tiles;
 uniform int supports;  // alone, into a viewport that is the light's tile and clips them
 
 void main() {
+#ifdef CUTOUT
+  texture_uv = uv;
+  vertex_alpha = color.a;
+#endif
   vec4 p = vec4(position, 1.0);
   vec3 place = vec3(dot(u, p), dot(v, p), dot(w, p));
   if (supports != 0) {

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/cutout_casters.h"
+
+#include <cstddef>
+
+namespace lightwell::render {
+
+Result<CutoutCasters> CutoutCasters::create(const Scene& scene, const Casters& casters,
+                                            const GBuffer& gbuffer) {
+  CutoutCasters c;
+  for (const std::size_t i : casters.cutouts) {
+    const Material& m = scene.materials[static_cast<std::size_t>(scene.primitives[i].material)];
+    c.draws_.push_back(
+        {scene.primitives[i], m.base_color_texture, gbuffer.base_color(i), m.alpha, m.alpha_cutoff});
+  }
+  if (c.draws_.empty()) return c;
+  auto program = gl::make_program("shadow_vertex", "cutout_fragment", "#define CUTOUT\n");
+  if (!program) return program.error();
+  c.program_ = std::move(program).value();
+  c.vertex_array_ = gl::make_vertex_array();
+  glBindVertexArray(c.vertex_array_.id());
+  glBindBuffer(GL_ARRAY_BUFFER, gbuffer.vertices());
+  const auto attribute = [](GLuint index, GLint components, GLenum type, std::size_t offset) {
+    glEnableVertexAttribArray(index);
+    glVertexAttribPointer(index, components, type, GL_TRUE, sizeof(Vertex),
+                          reinterpret_cast<const void*>(offset));
+  };
+  attribute(0, 3, GL_FLOAT, offsetof(Vertex, position));
+  attribute(4, 2, GL_FLOAT, offsetof(Vertex, uv));
+  attribute(5, 4, GL_UNSIGNED_SHORT, offsetof(Vertex, color));
+  for (const GLuint row : {1u, 2u, 3u}) {
+    glEnableVertexAttribArray(row);
+    glVertexAttribDivisor(row, 1);
+  }
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, gbuffer.indices());
+  glBindVertexArray(0);
+  return c;
+}
+
+void CutoutCasters::draw(std::span<const LightRow> rows, GLuint buffer, const ShadowAtlas& atlas) const {
+  if (draws_.empty()) return;
+  atlas.bind();
+  glUseProgram(program_.id());
+  glUniform1i(gl::uniform(program_, "tiles"), atlas.tiles());
+  glUniform1i(gl::uniform(program_, "supports"), 0);
+  glUniform1i(gl::uniform(program_, "base_color_map"), 0);
+  glBindVertexArray(vertex_array_.id());
+  glBindBuffer(GL_ARRAY_BUFFER, buffer);
+  const std::size_t offsets[] = {offsetof(LightRow, u), offsetof(LightRow, v), offsetof(LightRow, w)};
+  for (GLuint row = 0; row < 3; ++row)
+    glVertexAttribPointer(row + 1, 4, GL_FLOAT, GL_FALSE, sizeof(LightRow),
+                          reinterpret_cast<const void*>(offsets[row]));
+  glDisable(GL_CULL_FACE);
+  for (const Draw& draw : draws_) {
+    gl::bind_texture(0, draw.texture);
+    glUniform3fv(gl::uniform(program_, "base_color_uv"), 2, draw.use.from_uv.data());
+    glUniform1f(gl::uniform(program_, "alpha"), draw.alpha);
+    glUniform1f(gl::uniform(program_, "alpha_cutoff"), draw.alpha_cutoff);
+    const auto offset = static_cast<std::uintptr_t>(draw.primitive.first_index) * sizeof(std::uint32_t);
+    glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(draw.primitive.index_count), GL_UNSIGNED_INT,
+                            reinterpret_cast<const void*>(offset), static_cast<GLsizei>(rows.size()));
+  }
+}
+
+}  // namespace lightwell::render

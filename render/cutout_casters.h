@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "render/gbuffer.h"
+#include "render/gl_objects.h"
+#include "render/light_rows.h"
+#include "render/scene.h"
+#include "render/shadow_atlas.h"
+
+namespace lightwell::render {
+
+// Casters with holes where their texture says so (leaves, fences): drawn into the shadow maps as the picture shows
+// them, from the G-buffer's own vertices.
+class CutoutCasters {
+ public:
+  static Result<CutoutCasters> create(const Scene& scene, const Casters& casters, const GBuffer& gbuffer);
+  [[nodiscard]] bool empty() const { return draws_.empty(); }
+  // Adds to the maps of rows, the first of buffer, that the atlas has just drawn.
+  void draw(std::span<const LightRow> rows, GLuint buffer, const ShadowAtlas& atlas) const;
+
+ private:
+  struct Draw {
+    Primitive primitive;
+    TextureUse use;
+    GLuint texture = 0;
+    float alpha = 1;
+    float alpha_cutoff = 0;
+  };
+  std::vector<Draw> draws_;
+  gl::Program program_;
+  gl::VertexArray vertex_array_;
+};
+
+}  // namespace lightwell::render
