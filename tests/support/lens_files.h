@@ -16,11 +16,11 @@
 
 namespace lightwell::test {
 
-// Files of other programs that describe a lens, and what becomes of them.
 using calibration::LensConversion;
 using calibration::SourceLens;
 using calibration::SourceLensOptions;
 
+// Files of other programs that describe a lens, and what becomes of them.
 class LensImport : public testing::Test {
  protected:
   std::string file(const std::string& text, const std::string& name = "source") const {

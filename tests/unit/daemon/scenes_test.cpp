@@ -9,7 +9,6 @@
 
 #include "daemon/simulator/frame_generator.h"
 #include "daemon/simulator/mains_light.h"
-#include "lighting/direction.h"
 #include "tests/support/simulated_frames.h"
 
 namespace lightwell::simulator {
