@@ -104,9 +104,11 @@ Parsed parse_options(int argc, const char* const* argv) {
       ->check(whole_numbers(1, 1024))
       ->capture_default_str();
   app.add_option("--background", background,
-                 "behind the scene: none (black, alpha 0) or the measured environment")
-      ->check(CLI::IsMember({"none", "environment"}))
+                 "behind the scene: none (black, alpha 0), the measured environment, or a plate: EXR, PNG, "
+                 "JPEG or a numbered sequence; what only receives shadows shows the plate, darkened by them")
       ->capture_default_str();
+  app.add_option("--plate-white", options.plate_white_cd_m2, "radiance that the plate's value 1 stands for")
+      ->check(numbers_above_0_to(1e9, "above 0 to 1e9 cd/m²"));
   app.add_option("--tonemap", tone_map, "for window and PNG: reinhard, or none (clamped)")
       ->check(CLI::IsMember({"reinhard", "none"}))
       ->capture_default_str();
@@ -133,6 +135,13 @@ Parsed parse_options(int argc, const char* const* argv) {
   const auto parsed_size = parse_size(size);
   if (!parsed_size) return {std::nullopt, complain(parsed_size.error().message)};
   std::tie(options.width, options.height) = *parsed_size;
+  options.size_given = !app.get_option("--size")->empty();
+  options.background_environment = background == "environment";
+  if (!options.background_environment && background != "none") options.plate = background;
+  if (background.empty())
+    return {std::nullopt, complain("--background '': must be none, environment or a picture's name")};
+  if (options.plate_white_cd_m2 && options.plate.empty())
+    return {std::nullopt, complain("--plate-white: there is no plate; --background names one")};
   for (const std::string& pattern : outputs) {
     const auto name = FrameName::parse(pattern);
     if (!name) return {std::nullopt, complain(name.error().message)};
@@ -140,11 +149,10 @@ Parsed parse_options(int argc, const char* const* argv) {
   }
   outputs.push_back(options.stats.string());
   for (const std::string& output : outputs)
-    if (const Status other =
-            check_output_is_no_input(output, {options.scene, options.environment, options.light_set});
+    if (const Status other = check_output_is_no_input(
+            output, {options.scene, options.environment, options.light_set, options.plate});
         !other)
       return {std::nullopt, complain(other.error().message)};
-  options.background_environment = background == "environment";
   if (options.background_environment && !options.light_set.empty())
     return {std::nullopt,
             complain("--background environment: a light set has no picture of its environment")};

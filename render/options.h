@@ -30,11 +30,14 @@ struct Options {
   int shadow_size = 256;
   int width = 640;
   int height = 480;
+  bool size_given = false;  // else a plate's own
   std::string camera;
   std::string animation;      // empty: the first
   double scene_rate_hz = 25;  // frames of the scene's animation a second
   int samples = 1;
   bool background_environment = false;
+  std::string plate;  // picture or numbered sequence; empty: none
+  std::optional<float> plate_white_cd_m2;
   ToneMap tone_map = ToneMap::reinhard;
   bool headless = false;
   std::optional<int> frames;

@@ -82,9 +82,10 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   r.nothing_casts_ = atlas->empty() && cutouts->empty();
   auto tone_mapper = ToneMapper::create();
   if (!tone_mapper) return tone_mapper.error();
-  auto surfaces = gl::make_program(
-      "fullscreen_vertex", "shade_fragment",
-      shading_models(scene) + emission_fact(scene) + map_facts(r.nothing_casts_, options.simplify_casters));
+  r.shading_defines_ = shading_models(scene) + emission_fact(scene);
+  auto surfaces =
+      gl::make_program("fullscreen_vertex", "shade_fragment",
+                       r.shading_defines_ + map_facts(r.nothing_casts_, options.simplify_casters));
   if (!surfaces) return surfaces.error();
   auto background = gl::make_program("fullscreen_vertex", "background_fragment");
   if (!background) return background.error();
@@ -117,13 +118,43 @@ Status Renderer::resize(int width, int height) {
   options_.height = height;
   if (Status s = gbuffer_.resize(width, height); !s) return s;
   if (Status s = tone_mapper_.resize(width, height); !s) return s;
-  for (Sum& sum : sums_) {
-    sum.texture = gl::make_texture(GL_RGBA32F, width, height);
+  if (compositor_) {
+    if (Status s = compositor_->resize(width, height); !s) return s;
+    if (Status s = resize(unshadowed_sums_); !s) return s;
+  }
+  return resize(sums_);
+}
+
+Status Renderer::resize(Sums& sums) const {
+  for (Sum& sum : sums.sum) {
+    sum.texture = gl::make_texture(GL_RGBA32F, options_.width, options_.height);
     auto framebuffer = gl::make_framebuffer({sum.texture.id()}, gbuffer_.depth());
     if (!framebuffer) return framebuffer.error();
     sum.framebuffer = std::move(framebuffer).value();
   }
   return {};
+}
+
+Status Renderer::set_plate(const Plate& plate, float white) {
+  if (!compositor_) {
+    auto compositor = Compositor::create();
+    if (!compositor) return compositor.error();
+    auto program = gl::make_program("fullscreen_vertex", "shade_fragment",
+                                    shading_defines_ + map_facts(true, options_.simplify_casters));
+    if (!program) return program.error();
+    unshadowed_ = std::move(program).value();
+    glUniformBlockBinding(unshadowed_.id(), glGetUniformBlockIndex(unshadowed_.id(), "Lights"), 0);
+    compositor_.emplace(std::move(compositor).value());
+    if (Status s = compositor_->resize(options_.width, options_.height); !s) return s;
+    if (Status s = resize(unshadowed_sums_); !s) return s;
+  }
+  compositor_->set_plate(plate, white);
+  return {};
+}
+
+Renderer::Shown Renderer::shown() const {
+  if (compositor_) return {compositor_->picture(), compositor_->framebuffer()};
+  return {sums_.last().texture.id(), sums_.last().framebuffer.id()};
 }
 
 void Renderer::set_environment(const LatLongImage* image) {
@@ -155,8 +186,27 @@ double Renderer::lap(double start, double& pass) const {
 Status Renderer::render(const LightSet& lights, const SceneCamera& camera, double environment_turn_rad) {
   times_ = {};
   const std::vector<LightRow> rows = make_light_rows(lights.lights, casters_, options_.shadow_size);
-  const std::span<const LightRow> all(rows);
   shadow_maps_ = nothing_casts_ ? 0 : rows.size();
+  const int samples = options_.samples;
+  // A plate is seen through each sample, so that its sum over the lights must be known first.
+  const int at_once = compositor_ ? 1 : samples;
+  for (int first = 0; first < samples; first += at_once) {
+    if (Status s = render_samples(rows, lights, camera, first, first + at_once, environment_turn_rad); !s)
+      return s;
+    if (compositor_)
+      compositor_->add(sums_.last().texture.id(), unshadowed_sums_.last().texture.id(), gbuffer_.surface(),
+                       1 / static_cast<float>(samples), first == 0);
+  }
+  if (glGetError() != GL_NO_ERROR)
+    return Error{ErrorKind::failed, "the OpenGL ES driver failed (out of memory?)"};
+  return {};
+}
+
+Status Renderer::render_samples(std::span<const LightRow> all, const LightSet& lights,
+                                const SceneCamera& camera, int first_sample, int end_sample,
+                                double environment_turn_rad) {
+  const int samples = end_sample - first_sample;
+  const float weight = 1 / static_cast<float>(samples);
   const auto capacity = static_cast<std::size_t>(atlas_.capacity());
   double time = now_ms();
   bool start_sum = true;
@@ -166,39 +216,62 @@ Status Renderer::render(const LightSet& lights, const SceneCamera& camera, doubl
     glBindBuffer(GL_UNIFORM_BUFFER, light_block_.id());
     glBufferSubData(GL_UNIFORM_BUFFER, 0, static_cast<GLsizeiptr>(block.size_bytes()), block.data());
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, light_block_.id());
-    if (!nothing_casts_ && !block.empty()) {
+    // The maps of one block serve all samples.
+    const bool drawn = first_sample > 0 && all.size() <= capacity;
+    if (!nothing_casts_ && !block.empty() && !drawn) {
       if (Status s = atlas_.draw(block, light_block_.id()); !s) return s;
       cutouts_.draw(block, light_block_.id(), atlas_);
     }
     time = lap(time, times_.shadow_ms);
-    for (int sample = 0; sample < options_.samples; ++sample) {
+    for (int sample = first_sample; sample < end_sample; ++sample) {
       const View view =
           make_view(camera, options_.width, options_.height, sample_offset(sample, options_.samples));
       // With one sample a pixel the G-buffer of the first block serves all blocks.
-      if (first == 0 || options_.samples > 1) gbuffer_.draw(view);
+      if (first == 0 || samples > 1) gbuffer_.draw(view);
       time = lap(time, times_.gbuffer_ms);
-      shade(view, static_cast<int>(block.size()), lights, first == 0, start_sum, environment_turn_rad);
+      shade(view, static_cast<int>(block.size()), lights, first == 0, start_sum, weight,
+            environment_turn_rad);
       start_sum = false;
       time = lap(time, times_.shading_ms);
     }
   }
-  if (glGetError() != GL_NO_ERROR)
-    return Error{ErrorKind::failed, "the OpenGL ES driver failed (out of memory?)"};
   return {};
 }
 
 void Renderer::shade(const View& view, int light_count, const LightSet& lights, bool first_block,
-                     bool start_sum, double environment_turn_rad) {
-  const GLuint so_far = sums_[current_].texture.id();
-  current_ = 1 - current_;
-  glBindFramebuffer(GL_FRAMEBUFFER, sums_[current_].framebuffer.id());
+                     bool start_sum, float weight, double environment_turn_rad) {
+  const GLuint so_far = sums_.last().texture.id();
+  if (compositor_)
+    shade_surfaces(unshadowed_, unshadowed_sums_, view, light_count, lights, first_block, start_sum, weight);
+  shade_surfaces(surfaces_, sums_, view, light_count, lights, first_block, start_sum, weight);
+
+  const Uniforms background(background_);
+  background.set_texture("so_far", 0, so_far);
+  background.set_texture("environment", 1, environment_.id());
+  background.set("weight", weight);
+  background.set("start_sum", start_sum ? 1 : 0);
+  background.set("show_environment", show_environment_ && first_block ? 1 : 0);
+  background.set("environment_turns",
+                 static_cast<float>(std::remainder(environment_turn_rad / (2 * kPi), 1.0)));
+  background.set("view_forward", view.forward.data());
+  background.set("view_right", view.right.data());
+  background.set("view_up", view.up.data());
+  glDepthFunc(GL_EQUAL);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDepthFunc(GL_LESS);
+}
+
+void Renderer::shade_surfaces(const gl::Program& program, Sums& sums, const View& view, int light_count,
+                              const LightSet& lights, bool first_block, bool start_sum, float weight) {
+  const GLuint so_far = sums.last().texture.id();
+  sums.current = 1 - sums.current;
+  glBindFramebuffer(GL_FRAMEBUFFER, sums.last().framebuffer.id());
   glViewport(0, 0, options_.width, options_.height);
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);
   glBindVertexArray(no_vertices_.id());
-  const float weight = 1 / static_cast<float>(options_.samples);
 
-  const Uniforms surfaces(surfaces_);
+  const Uniforms surfaces(program);
   surfaces.set_texture("so_far", 0, so_far);
   surfaces.set_texture("position_material_map", 1, gbuffer_.position_material());
   surfaces.set_texture("surface_map", 2, gbuffer_.surface());
@@ -217,27 +290,12 @@ void Renderer::shade(const View& view, int light_count, const LightSet& lights, 
   surfaces.set("eye", view.eye.data());
   glDepthFunc(GL_GREATER);  // the draw is at depth 1, where nothing is
   glDrawArrays(GL_TRIANGLES, 0, 3);
-
-  const Uniforms background(background_);
-  background.set_texture("so_far", 0, so_far);
-  background.set_texture("environment", 1, environment_.id());
-  background.set("weight", weight);
-  background.set("start_sum", start_sum ? 1 : 0);
-  background.set("show_environment", show_environment_ && first_block ? 1 : 0);
-  background.set("environment_turns",
-                 static_cast<float>(std::remainder(environment_turn_rad / (2 * kPi), 1.0)));
-  background.set("view_forward", view.forward.data());
-  background.set("view_right", view.right.data());
-  background.set("view_up", view.up.data());
-  glDepthFunc(GL_EQUAL);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glDepthFunc(GL_LESS);
 }
 
 void Renderer::tone_map(ToneMap operation, double dt_s) {
   const double start = now_ms();
-  tone_mapper_.adapt(sums_[current_].texture.id(), operation, dt_s);
-  tone_mapper_.draw(sums_[current_].texture.id());
+  tone_mapper_.adapt(shown().texture, operation, dt_s);
+  tone_mapper_.draw(shown().texture);
   lap(start, times_.tonemap_ms);
 }
 
@@ -245,7 +303,7 @@ RadiancePicture Renderer::radiance() const {
   const int width = options_.width;
   const int height = options_.height;
   RadiancePicture picture{width, height, std::vector<float>(static_cast<std::size_t>(width * height) * 4)};
-  glBindFramebuffer(GL_FRAMEBUFFER, sums_[current_].framebuffer.id());
+  glBindFramebuffer(GL_FRAMEBUFFER, shown().framebuffer);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, picture.rgba.data());
   const auto row = static_cast<std::ptrdiff_t>(width) * 4;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "lighting/light_set.h"
 #include "render/camera.h"
 #include "render/casters.h"
+#include "render/compositor.h"
 #include "render/cutout_casters.h"
 #include "render/gbuffer.h"
 #include "render/picture.h"
@@ -47,10 +49,12 @@ class Renderer {
   Status resize(int width, int height);
   // Shown where no surface is; row 0 is the zenith. nullptr: nothing, with alpha 0.
   void set_environment(const LatLongImage* image);
+  // Behind everything, with the objects' shadows on it (Compositor). white: radiance of the plate's 1.
+  Status set_plate(const Plate& plate, float white);
   // environment_turn_rad turns the shown environment about +Y (a light at azimuth λ comes to λ + angle).
   Status render(const LightSet& lights, const SceneCamera& camera, double environment_turn_rad = 0);
   void tone_map(ToneMap operation, double dt_s);
-  void present() const { tone_mapper_.draw_to_window(sums_[current_].texture.id()); }
+  void present() const { tone_mapper_.draw_to_window(shown().texture); }
 
   [[nodiscard]] RadiancePicture radiance() const;
   [[nodiscard]] DisplayPicture display() const { return tone_mapper_.read(); }
@@ -68,9 +72,25 @@ class Renderer {
     gl::Texture texture;
     gl::Framebuffer framebuffer;
   };
+  // Read one, write the other: float blending is not guaranteed.
+  struct Sums {
+    Sum sum[2];
+    int current = 0;
+    [[nodiscard]] const Sum& last() const { return sum[current]; }
+  };
+  struct Shown {
+    GLuint texture;
+    GLuint framebuffer;
+  };
+  [[nodiscard]] Shown shown() const;
+  Status resize(Sums& sums) const;
+  Status render_samples(std::span<const LightRow> rows, const LightSet& lights, const SceneCamera& camera,
+                        int first_sample, int end_sample, double environment_turn_rad);
   // Adds the block of lights and, with the first of a sample, what does not depend on them.
   void shade(const View& view, int light_count, const LightSet& lights, bool first_block, bool start_sum,
-             double environment_turn_rad);
+             float weight, double environment_turn_rad);
+  void shade_surfaces(const gl::Program& program, Sums& sums, const View& view, int light_count,
+                      const LightSet& lights, bool first_block, bool start_sum, float weight);
   // Adds the time since start to a pass, where passes are measured.
   double lap(double start, double& pass) const;
 
@@ -86,8 +106,12 @@ class Renderer {
   gl::VertexArray no_vertices_;
   gl::Texture environment_;
   bool show_environment_ = false;
-  Sum sums_[2];  // read one, write the other: float blending is not guaranteed
-  int current_ = 0;
+  Sums sums_;
+  // Over a plate: light as if nothing cast a shadow.
+  std::optional<Compositor> compositor_;
+  std::string shading_defines_;
+  gl::Program unshadowed_;
+  Sums unshadowed_sums_;
   PassTimes times_;
   std::size_t shadow_maps_ = 0;
   bool nothing_casts_ = false;

@@ -15,6 +15,7 @@
 #include "render/egl_context.h"
 #include "render/gltf_scene.h"
 #include "render/light_source.h"
+#include "render/plate.h"
 #include "render/renderer.h"
 #include "render/scene_motion.h"
 #include "render/statistics.h"
@@ -99,13 +100,14 @@ bool has_display() {
 class Session {
  public:
   Session(const Options& options, const std::atomic<bool>& stop, Scene& scene, ChosenCamera camera,
-          LightSource& source)
+          LightSource& source, PlateSource* plates)
       : options_(options),
         stop_(stop),
         scene_(scene),
         motion_(scene),
         camera_(std::move(camera)),
-        source_(source) {}
+        source_(source),
+        plates_(plates) {}
 
   Status prepare() {
     if (Status s = check_driver(); !s) return s;
@@ -118,6 +120,8 @@ class Session {
     auto renderer = Renderer::create(scene_, renderer_options);
     if (!renderer) return renderer.error();
     renderer_.emplace(std::move(renderer).value());
+    if (plates_ != nullptr)
+      if (Status s = show_plate(); !s) return s;
     statistics_.shadow_size = options_.shadow_size;
     statistics_.triangles = scene_.triangles();
     statistics_.gl_renderer = Renderer::gl_renderer();
@@ -197,7 +201,18 @@ class Session {
            (options_.seconds && seconds_since(start_) >= *options_.seconds);
   }
 
+  Status show_plate() {
+    if (!plates_->plate().remark.empty()) say(plates_->plate().remark);
+    return renderer_->set_plate(plates_->plate(), options_.plate_white_cd_m2.value_or(1));
+  }
+
   Status render(const SceneCamera& camera) {
+    if (plates_ != nullptr) {
+      const auto another = plates_->update(frame_);
+      if (!another) return another.error();
+      if (*another)
+        if (Status s = show_plate(); !s) return s;
+    }
     if (options_.background_environment && source_.environment_version() != shown_environment_) {
       renderer_->set_environment(source_.environment());
       shown_environment_ = source_.environment_version();
@@ -261,6 +276,7 @@ class Session {
   SceneMotion motion_;
   ChosenCamera camera_;
   LightSource& source_;
+  PlateSource* plates_;
   std::optional<Renderer> renderer_;
   Statistics statistics_;
   int frame_ = 0;
@@ -271,7 +287,8 @@ class Session {
 
 }  // namespace
 
-Status run_session(const Options& options, const std::atomic<bool>& stop) {
+Status run_session(const Options& chosen, const std::atomic<bool>& stop) {
+  Options options = chosen;
   if (Status s = check_outputs(options); !s) return s;
   auto scene = read_gltf(options.scene, options.animation);
   if (!scene) return scene.error();
@@ -285,9 +302,22 @@ Status run_session(const Options& options, const std::atomic<bool>& stop) {
   auto source = open_lights(options);
   if (!source) return source.error();
 
+  std::optional<PlateSource> plates;
+  if (!options.plate.empty()) {
+    auto opened = PlateSource::open(options.plate);
+    if (!opened) return opened.error();
+    plates.emplace(std::move(opened).value());
+    if (!options.size_given) {
+      options.width = plates->plate().width;
+      options.height = plates->plate().height;
+    }
+    if (plates->plate().display_referred && !options.plate_white_cd_m2)
+      say(options.plate + ": its white counts as 1 cd/m²; --plate-white says otherwise");
+  }
+
   // Made after the context and gone before it.
   const auto run = [&](Window* window) -> Status {
-    Session session(options, stop, *scene, *camera, **source);
+    Session session(options, stop, *scene, *camera, **source, plates ? &*plates : nullptr);
     if (Status s = session.prepare(); !s) return s;
     return window != nullptr ? session.run_window(*window) : session.run_off_screen();
   };
