@@ -3,7 +3,6 @@
 #include "bench/python_peers.h"
 
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -11,29 +10,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "bench/temporary_folder.h"
 #include "lighting/lat_long_image.h"
 
 namespace lightwell::bench {
 namespace {
-
-// A folder of its own that goes with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "lightwell-bench-XXXXXX").string();
-    if (mkdtemp(pattern.data()) != nullptr) path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 void write_maps(const std::filesystem::path& folder, const std::vector<NamedMap>& maps,
                 const std::vector<int>& counts) {
@@ -47,12 +28,6 @@ void write_maps(const std::filesystem::path& folder, const std::vector<NamedMap>
     index["maps"].push_back({{"file", file}, {"width", image.width}, {"height", image.height}});
   }
   std::ofstream(folder / "maps.json") << index;
-}
-
-std::string quoted(const std::string& word) {
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
 }
 
 // A line of the script's output: {"peer", "map", "lights", "ms", "direction": [[x, y, z]…], "illuminance": […]}.
@@ -73,7 +48,8 @@ void take_line(const std::string& line, std::vector<PythonPeer>& peers) {
 // Whether the script ran to its end.
 bool run_script(const std::filesystem::path& script, const std::filesystem::path& maps,
                 std::vector<PythonPeer>& peers) {
-  FILE* pipe = popen(("python3 " + quoted(script.string()) + " " + quoted(maps.string())).c_str(), "r");
+  FILE* pipe =
+      popen(("python3 " + shell_quoted(script.string()) + " " + shell_quoted(maps.string())).c_str(), "r");
   if (pipe == nullptr) return false;
   bool good = true;
   char* line = nullptr;

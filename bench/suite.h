@@ -16,10 +16,11 @@ struct Options {
   double seconds_per_case = 1;  // time spent on each case, at least Turns::least_runs
   std::string
       data_folder;  // reference data that is not part of the project; empty: what needs it is left out
-  std::string peers_folder;  // scripts of peers in Python (bench/peers); empty: left out
-  std::string only_setting;  // coherence: only settings (sequences) whose name contains this; empty: all
-  std::string only_name;     // coherence: only rows whose name contains this; empty: all
-  int lights = 64;           // coherence: lights of each set
+  std::string peers_folder;       // scripts of peers in Python (bench/peers); empty: left out
+  std::string references_folder;  // stored references (bench/references); empty: traced anew, coarser
+  std::string only_setting;       // coherence, render: only settings whose name contains this; empty: all
+  std::string only_name;          // coherence: only rows whose name contains this; empty: all
+  int lights = 64;                // coherence: lights of each set
 };
 
 // How cases take turns.

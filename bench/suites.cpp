@@ -7,6 +7,7 @@
 #include "bench/coherence.h"
 #include "bench/error_curves.h"
 #include "bench/lights_suite.h"
+#include "bench/render_suite.h"
 #include "bench/suite.h"
 
 namespace lightwell::bench {
@@ -51,6 +52,7 @@ const std::vector<Suite>& suites() {
       {"fit", fit_suite, fit_figures},
       {"lens", lens_suite},
       {"response", response_suite},
+      {"render", render_suite, render_figures},
       // Hundreds of rows: the lights suite has their plot, as means.
       {"coherence", coherence_suite, [](const std::vector<Row>&) { return std::vector<Figure>(); }},
   };

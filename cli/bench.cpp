@@ -71,9 +71,13 @@ Command add_bench(CLI::App& app) {
       ->check(numbers_from(0, 600, "0 to 600 seconds"))
       ->capture_default_str();
   command->add_option("--peers", asked->options.peers_folder,
-                      "Folder of peers in Python (bench/peers): the lights suite runs them too");
-  command->add_option("--only", asked->options.only_setting,
-                      "Of the coherence suite, sequences whose name contains this");
+                      "Folder of peers in Python (bench/peers): the lights and render suites run them too");
+  command->add_option("--references", asked->options.references_folder,
+                      "Folder of stored references of the render suite (bench/references); else traced anew");
+  command->add_option(
+      "--only", asked->options.only_setting,
+      "Of the coherence suite, sequences whose name contains this; of the render suite, scenes, or "
+      "growth, or steadiness");
   command->add_option("--followers", asked->options.only_name,
                       "Of the coherence suite, followers whose name contains this");
   command->add_option("--lights", asked->options.lights, "Of the coherence suite, lights of a set")

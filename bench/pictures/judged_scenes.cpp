@@ -105,22 +105,4 @@ const std::vector<JudgedScene>& judged_scenes() {
   return all;
 }
 
-std::string balls_gltf(int triangles) {
-  SceneWriter writer = on_ground();
-  constexpr int kBalls = 5;
-  // 2 · (2r) · (r − 1) triangles a ball of r rings and 2r sectors.
-  const int rings = std::max(5, static_cast<int>(std::lround(std::sqrt(triangles / (4.0 * kBalls)) + 0.5)));
-  Mesh balls;
-  for (int i = 0; i < kBalls; ++i) {
-    const Mesh ball = render::sphere_mesh(
-        {0.55f * static_cast<float>(i - 2), 0.3f, 0.2f * static_cast<float>(i % 2)}, 0.25f, rings, 2 * rings);
-    const auto first = static_cast<std::uint32_t>(balls.positions.size());
-    balls.positions.insert(balls.positions.end(), ball.positions.begin(), ball.positions.end());
-    balls.normals.insert(balls.normals.end(), ball.normals.begin(), ball.normals.end());
-    for (const std::uint32_t index : ball.indices) balls.indices.push_back(first + index);
-  }
-  writer.add("balls", balls, "chalk", matte(Rgb::Constant(0.6f)));
-  return writer.gltf(camera_at("balls", {0.2f, 1.4f, 3.6f}, {0, 0.3f, 0}, 0.58f));
-}
-
 }  // namespace lightwell::pictures

@@ -27,7 +27,7 @@ Status make(const pictures::JudgedScene& judged, const std::filesystem::path& fo
   if (references.empty()) return {};
   const auto scene = render::read_gltf(scene_file);
   if (!scene) return scene.error();
-  const auto tracer = pictures::RayTracer::create(*scene);
+  const auto tracer = pictures::RayTracer::create(*scene, pictures::Edges::watertight);
   if (!tracer) return tracer.error();
   const std::vector<DirectionalLight> lights = pictures::exact_lights(light);
   std::fprintf(stderr, "%s: %zu lights, %zu triangles\n", name.c_str(), lights.size(), scene->triangles());

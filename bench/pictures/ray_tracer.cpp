@@ -23,7 +23,7 @@ using render::Scene;
 using render::SceneCamera;
 
 struct RayTracer::Scenes {
-  explicit Scenes(const Scene& s) : scene(s) {
+  Scenes(const Scene& s, Edges chosen) : scene(s), edges(chosen) {
     for (const auto& primitive : scene.primitives)
       triangle_primitive.insert(triangle_primitive.end(), primitive.index_count / 3,
                                 static_cast<int>(&primitive - scene.primitives.data()));
@@ -64,11 +64,12 @@ struct RayTracer::Scenes {
       rtcAttachGeometry(target, geometry);
       rtcReleaseGeometry(geometry);
     }
-    rtcSetSceneFlags(target, RTC_SCENE_FLAG_ROBUST);
+    if (edges == Edges::watertight) rtcSetSceneFlags(target, RTC_SCENE_FLAG_ROBUST);
     rtcCommitScene(target);
   }
 
   const Scene& scene;
+  Edges edges;
   std::vector<int> triangle_primitive;  // of all triangles, in the order of the primitives
   RTCDevice device = rtcNewDevice("threads=1");
   RTCScene all = rtcNewScene(device);
@@ -126,9 +127,13 @@ std::optional<Hit> first_hit(const RayTracer::Scenes& scenes, const Vec3f& eye, 
 Rgb reflected(const Material& m, const Hit& hit, const Vec3f& to_light, float cosine) {
   constexpr auto pi = static_cast<float>(kPi);
   if (m.model == Material::Model::phong) {
-    const Vec3f mirrored = 2 * hit.normal.dot(hit.to_eye) * hit.normal - hit.to_eye;
-    const float lobe = std::pow(std::max(0.0f, mirrored.dot(to_light)), m.exponent);
-    return cosine * (m.base_color / pi + m.specular * (lobe * (m.exponent + 2) / (2 * pi)));
+    Rgb returned = m.base_color / pi;
+    if (m.specular.maxCoeff() > 0) {
+      const Vec3f mirrored = 2 * hit.normal.dot(hit.to_eye) * hit.normal - hit.to_eye;
+      const float lobe = std::pow(std::max(0.0f, mirrored.dot(to_light)), m.exponent);
+      returned += m.specular * (lobe * (m.exponent + 2) / (2 * pi));
+    }
+    return cosine * returned;
   }
   const Vec3f half = (to_light + hit.to_eye).normalized();
   const float nl = cosine;
@@ -145,12 +150,13 @@ Rgb reflected(const Material& m, const Hit& hit, const Vec3f& to_light, float co
   return cosine * ((1 - fresnel) * (1 - m.metallic) * m.base_color / pi + fresnel * (d * visibility));
 }
 
-// Eight rays at a time from one point.
+// Eight rays at a time from one point. Lit: called with each light that arrives and what it returns of a lux.
+template <typename Lit>
 class ShadowRays {
  public:
-  ShadowRays(const RayTracer::Scenes& scenes, const Hit& hit) : scenes_(scenes), hit_(hit) {
+  ShadowRays(const RayTracer::Scenes& scenes, const Hit& hit, Lit lit)
+      : scenes_(scenes), hit_(hit), lit_(std::move(lit)) {
     rtcInitIntersectContext(&context_);
-    context_.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   }
 
   void add(const DirectionalLight& light, float cosine) {
@@ -162,12 +168,6 @@ class ShadowRays {
     if (++count_ == 8) flush();
   }
 
-  Rgbd sum() {
-    flush();
-    return sum_;
-  }
-
- private:
   void flush() {
     if (count_ == 0) return;
     for (int i = 0; i < 8; ++i) {
@@ -182,12 +182,11 @@ class ShadowRays {
     const Material& material = scenes_.scene.materials[static_cast<std::size_t>(
         scenes_.scene.primitives[static_cast<std::size_t>(hit_.primitive)].material)];
     for (int i = 0; i < count_; ++i)
-      if (rays_.tfar[i] >= 0)
-        sum_ += (light_[i]->illuminance * reflected(material, hit_, light_[i]->direction, cosine_[i]))
-                    .cast<double>();
+      if (rays_.tfar[i] >= 0) lit_(*light_[i], reflected(material, hit_, light_[i]->direction, cosine_[i]));
     count_ = 0;
   }
 
+ private:
   const RayTracer::Scenes& scenes_;
   const Hit& hit_;
   RTCIntersectContext context_;
@@ -196,7 +195,7 @@ class ShadowRays {
   float cosine_[8] = {};
   const DirectionalLight* light_[8] = {};
   int count_ = 0;
-  Rgbd sum_ = Rgbd::Zero();
+  Lit lit_;
 };
 
 template <typename Pixel>
@@ -225,7 +224,7 @@ RayTracer::RayTracer(RayTracer&&) noexcept = default;
 RayTracer& RayTracer::operator=(RayTracer&&) noexcept = default;
 RayTracer::~RayTracer() = default;
 
-Result<RayTracer> RayTracer::create(const Scene& scene) {
+Result<RayTracer> RayTracer::create(const Scene& scene, Edges edges) {
   const bool plain = scene.textures.empty() &&
                      std::all_of(scene.vertices.begin(), scene.vertices.end(),
                                  [](const render::Vertex& v) { return v.color == render::Vertex().color; }) &&
@@ -234,7 +233,7 @@ Result<RayTracer> RayTracer::create(const Scene& scene) {
                      });
   if (!plain)
     return Error{ErrorKind::usage, "the ray tracer knows no textures, vertex colours, cut-outs and emission"};
-  return RayTracer(std::make_unique<Scenes>(scene));
+  return RayTracer(std::make_unique<Scenes>(scene, edges));
 }
 
 RadiancePicture RayTracer::picture(const SceneCamera& camera, int width, int height,
@@ -245,14 +244,36 @@ RadiancePicture RayTracer::picture(const SceneCamera& camera, int width, int hei
   every_pixel(camera, width, height, threads, [&](std::size_t pixel, const Vec3f& eye, const Vec3f& ray) {
     const auto hit = first_hit(*scenes_, eye, ray);
     if (!hit) return;
-    ShadowRays rays(*scenes_, *hit);
+    Rgbd total = Rgbd::Zero();
+    ShadowRays rays(*scenes_, *hit, [&](const DirectionalLight& light, const Rgb& returned) {
+      total += (light.illuminance * returned).cast<double>();
+    });
     for (const DirectionalLight& light : lights)
       if (const float cosine = hit->normal.dot(light.direction); cosine > 0) rays.add(light, cosine);
-    const Rgb sum = rays.sum().cast<float>();
+    rays.flush();
+    const Rgb sum = total.cast<float>();
     std::copy_n(sum.data(), 3, &picture.rgba[4 * pixel]);
     picture.rgba[4 * pixel + 3] = 1;
   });
   return picture;
+}
+
+std::vector<float> RayTracer::transport(const SceneCamera& camera, int width, int height,
+                                        std::span<const DirectionalLight> lights) const {
+  std::vector<float> returned(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                              lights.size());
+  every_pixel(camera, width, height, 1, [&](std::size_t pixel, const Vec3f& eye, const Vec3f& ray) {
+    const auto hit = first_hit(*scenes_, eye, ray);
+    if (!hit) return;
+    float* of_pixel = returned.data() + pixel * lights.size();
+    ShadowRays rays(*scenes_, *hit, [&](const DirectionalLight& light, const Rgb& value) {
+      of_pixel[&light - lights.data()] = luminance(value);
+    });
+    for (const DirectionalLight& light : lights)
+      if (const float cosine = hit->normal.dot(light.direction); cosine > 0) rays.add(light, cosine);
+    rays.flush();
+  });
+  return returned;
 }
 
 std::vector<int> RayTracer::primitives(const SceneCamera& camera, int width, int height) const {

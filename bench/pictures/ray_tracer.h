@@ -14,12 +14,15 @@
 
 namespace lightwell::pictures {
 
+// Whether a ray may once in a million slip between two triangles that share an edge. Watertight takes twice the time.
+enum class Edges { fast, watertight };
+
 // Direct light with exact visibility: what a picture ought to be. The reflection models are written here anew, from
 // docs/conventions.md and the glTF specification, so that an error in a shader is not repeated.
 class RayTracer {
  public:
   // The scene must outlive it.    usage: a scene with textures, vertex colours, cut-outs or emission
-  static Result<RayTracer> create(const render::Scene& scene);
+  static Result<RayTracer> create(const render::Scene& scene, Edges edges = Edges::fast);
   RayTracer(RayTracer&&) noexcept;
   RayTracer& operator=(RayTracer&&) noexcept;
   ~RayTracer();
@@ -29,6 +32,9 @@ class RayTracer {
   [[nodiscard]] render::RadiancePicture picture(const render::SceneCamera& camera, int width, int height,
                                                 std::span<const DirectionalLight> lights,
                                                 int threads = 1) const;
+  // What a lux from each light returns at each pixel: luminance of white light, [pixel][light].
+  [[nodiscard]] std::vector<float> transport(const render::SceneCamera& camera, int width, int height,
+                                             std::span<const DirectionalLight> lights) const;
   // The primitive that each pixel shows, row by row; −1: none.
   [[nodiscard]] std::vector<int> primitives(const render::SceneCamera& camera, int width, int height) const;
 
@@ -42,6 +48,6 @@ class RayTracer {
 // The upper half of an image as lights of which none carries more than most_share of the luminance, but for a pixel that
 // would have to be cut into more than 16 × 16: faint pixels are taken together up to 4 × 4, bright ones cut. A pixel's
 // light comes evenly from all of it.
-std::vector<DirectionalLight> exact_lights(const LatLongImage& image, double most_share = 1.0 / 8192);
+std::vector<DirectionalLight> exact_lights(const LatLongImage& image, double most_share = 1.0 / 16384);
 
 }  // namespace lightwell::pictures
