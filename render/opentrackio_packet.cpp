@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/opentrackio_packet.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace lightwell::render {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kHeader = 16;
+constexpr std::size_t kLongestSample = std::size_t{1} << 20;
+constexpr std::uint8_t kJson = 1;
+
+Error bad(const std::string& what) {
+  return {ErrorKind::bad_input, "OpenTrackIO: " + what};
+}
+
+std::uint32_t big_endian(std::span<const std::uint8_t> bytes) {
+  std::uint32_t value = 0;
+  for (const std::uint8_t byte : bytes) value = value << 8 | byte;
+  return value;
+}
+
+// The object or number at a key, nullptr where it is absent.
+Result<const json*> member(const json& object, const char* key, bool number) {
+  const auto found = object.find(key);
+  if (found == object.end() || found->is_null()) return static_cast<const json*>(nullptr);
+  if (number ? !found->is_number() : !found->is_object())
+    return bad(std::string(key) + (number ? ": not a number" : ": not an object"));
+  return &*found;
+}
+
+Result<std::optional<double>> number(const json& object, const char* key, double low, double high) {
+  const auto found = member(object, key, true);
+  if (!found) return found.error();
+  if (*found == nullptr) return std::optional<double>();
+  const double value = (*found)->get<double>();
+  if (!(value >= low && value <= high))
+    return bad(std::string(key) + ": value " + std::to_string(value) + ", allowed " + std::to_string(low) +
+               " to " + std::to_string(high));
+  return std::optional<double>(value);
+}
+
+// Three numbers of an object that may be absent; those that are missing in one that is there are an error.
+Result<Vec3d> triple(const json& object, const char* key, const char* const (&names)[3], double limit,
+                     double absent) {
+  const auto found = member(object, key, false);
+  if (!found) return found.error();
+  Vec3d values = Vec3d::Constant(absent);
+  if (*found == nullptr) return values;
+  for (int i = 0; i < 3; ++i) {
+    const auto value = number(**found, names[i], -limit, limit);
+    if (!value) return value.error();
+    if (!*value) return bad(std::string(key) + ": " + names[i] + " is missing");
+    values[i] = **value;
+  }
+  return values;
+}
+
+constexpr const char* kXyz[3] = {"x", "y", "z"};
+constexpr const char* kAngles[3] = {"pan", "tilt", "roll"};
+constexpr double kMostDegrees = 1e6;  // angles may go round any number of times
+constexpr double kMostScale = 1e3;
+
+Status compose(const json& transforms, TrackedCamera& camera) {
+  Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();
+  for (const json& transform : transforms) {
+    if (!transform.is_object()) return bad("transforms: not a list of objects");
+    const auto translation = triple(transform, "translation", kXyz, kFarthestTracked_m, 0);
+    if (!translation) return translation.error();
+    const auto angles = triple(transform, "rotation", kAngles, kMostDegrees, 0);
+    if (!angles) return angles.error();
+    const auto own_scale = triple(transform, "scale", kXyz, kMostScale, 1);
+    if (!own_scale) return own_scale.error();
+    const Eigen::Matrix3d rotation = rotation_from_pan_tilt_roll((*angles)[0], (*angles)[1], (*angles)[2]);
+    camera.position_m += linear * *translation;
+    camera.stage_from_camera *= rotation;
+    linear *= rotation * own_scale->asDiagonal();
+  }
+  if (!(camera.position_m.cwiseAbs().maxCoeff() <= kFarthestTracked_m))
+    return bad("transforms: the camera is more than 1e6 m away");
+  return {};
+}
+
+// What is at a path of objects, nullptr where something of it is absent.
+Result<const json*> object_at(const json& root, std::initializer_list<const char*> path) {
+  const json* at = &root;
+  for (const char* key : path) {
+    const auto next = member(*at, key, false);
+    if (!next) return next.error();
+    if (*next == nullptr) return *next;
+    at = *next;
+  }
+  return at;
+}
+
+Result<std::optional<double>> number_at(const json& root, std::initializer_list<const char*> path,
+                                        const char* key, double low, double high) {
+  const auto object = object_at(root, path);
+  if (!object) return object.error();
+  if (*object == nullptr) return std::optional<double>();
+  return number(**object, key, low, high);
+}
+
+struct Sample {
+  bool has_pose = false;
+  TrackedCamera camera;
+};
+
+Result<Sample> read_sample(const json& root) {
+  if (!root.is_object()) return bad("the sample is no object");
+  Sample sample;
+  const auto focal = number_at(root, {"lens"}, "pinholeFocalLength", 0.1, 1e5);
+  if (!focal) return focal.error();
+  sample.camera.focal_length_mm = *focal;
+  const auto height =
+      number_at(root, {"static", "camera", "activeSensorPhysicalDimensions"}, "height", 0.01, 1e4);
+  if (!height) return height.error();
+  sample.camera.sensor_height_mm = *height;
+  const auto transforms = root.find("transforms");
+  if (transforms == root.end()) return sample;
+  if (!transforms->is_array() || transforms->empty()) return bad("transforms: not a list of objects");
+  if (Status s = compose(*transforms, sample.camera); !s) return s.error();
+  sample.has_pose = true;
+  return sample;
+}
+
+Result<Sample> decode(const std::string& payload) {
+  const json root = json::parse(payload, nullptr, false);
+  if (root.is_discarded()) return bad("not JSON");
+  return read_sample(root);
+}
+
+}  // namespace
+
+std::uint16_t fletcher16(std::span<const std::uint8_t> bytes, std::uint16_t start) {
+  auto low = static_cast<std::uint8_t>(start & 255);
+  auto high = static_cast<std::uint8_t>(start >> 8);
+  for (const std::uint8_t byte : bytes) {
+    low = static_cast<std::uint8_t>(low + byte);
+    high = static_cast<std::uint8_t>(high + low);
+  }
+  return static_cast<std::uint16_t>(high << 8 | low);
+}
+
+Result<std::optional<TrackedCamera>> OpenTrackIoReader::fail(const std::string& what) {
+  payload_.clear();
+  return bad(what);
+}
+
+Result<std::optional<TrackedCamera>> OpenTrackIoReader::take(std::span<const std::uint8_t> datagram) {
+  const std::string text(datagram.begin(), datagram.end());
+  if (text.starts_with('{')) {
+    payload_ = text;
+  } else {
+    if (datagram.size() < kHeader || !text.starts_with("OTrk")) return fail("no OTrk header");
+    const std::size_t length = big_endian(datagram.subspan(12, 2)) & 0x7FFF;
+    if (datagram.size() != kHeader + length) return fail("truncated datagram");
+    const std::uint16_t sum = fletcher16(datagram.subspan(kHeader), fletcher16(datagram.first(14)));
+    if (sum != big_endian(datagram.subspan(14, 2))) return fail("wrong checksum");
+    if (datagram[5] != kJson)
+      return fail("encoding " + std::to_string(datagram[5]) + ", only 1 (JSON) is read");
+    const std::size_t offset = big_endian(datagram.subspan(8, 4));
+    if (offset == 0) payload_.clear();
+    if (offset != payload_.size()) return fail("a segment is missing");
+    if (payload_.size() + length > kLongestSample) return fail("a sample of more than 1 MiB");
+    payload_.append(text, kHeader);
+    const bool last = (datagram[12] & 0x80) != 0;
+    if (!last) return std::optional<TrackedCamera>();
+  }
+  auto sample = decode(payload_);
+  payload_.clear();
+  if (!sample) return sample.error();
+  if (sample->camera.sensor_height_mm) sensor_height_mm_ = sample->camera.sensor_height_mm;
+  if (!sample->has_pose) return std::optional<TrackedCamera>();
+  sample->camera.sensor_height_mm = sensor_height_mm_;
+  return std::optional<TrackedCamera>(sample->camera);
+}
+
+Result<std::optional<TrackedCamera>> parse_opentrackio_json(const std::string& text) {
+  const auto sample = decode(text);
+  if (!sample) return sample.error();
+  return sample->has_pose ? std::optional<TrackedCamera>(sample->camera) : std::nullopt;
+}
+
+}  // namespace lightwell::render

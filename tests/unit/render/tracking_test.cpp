@@ -1,0 +1,265 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cmath>
+
+#include "render/freed_packet.h"
+#include "render/opentrackio_packet.h"
+#include "render/tracking_stream.h"
+
+namespace lightwell::render {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+void put_24(Bytes& bytes, double value) {
+  const auto whole = static_cast<std::uint32_t>(static_cast<std::int32_t>(std::lround(value)));
+  for (const int shift : {16, 8, 0}) bytes.push_back(static_cast<std::uint8_t>(whole >> shift & 255));
+}
+
+void set_checksum(Bytes& bytes) {
+  unsigned sum = 0;
+  for (std::size_t i = 0; i + 1 < bytes.size(); ++i) sum += bytes[i];
+  bytes.back() = static_cast<std::uint8_t>(0x40 - sum);
+}
+
+Bytes freed(double pan, double tilt, double roll, const Vec3d& mm, double zoom = 0) {
+  Bytes bytes = {0xD1, 7};
+  for (const double angle : {pan, tilt, roll}) put_24(bytes, angle * 32768);
+  for (int i = 0; i < 3; ++i) put_24(bytes, mm[i] * 64);
+  put_24(bytes, zoom);
+  put_24(bytes, 1000);
+  bytes.insert(bytes.end(), {0, 0, 0});
+  set_checksum(bytes);
+  return bytes;
+}
+
+// Where the picture's axis and its top point to in the scene.
+Vec3f forward(const TrackedCamera& tracked) {
+  return -tracked_camera(tracked, {}).world_from_camera.col(2).head<3>();
+}
+Vec3f up(const TrackedCamera& tracked) {
+  return tracked_camera(tracked, {}).world_from_camera.col(1).head<3>();
+}
+Vec3f eye(const TrackedCamera& tracked) {
+  return tracked_camera(tracked, {}).world_from_camera.col(3).head<3>();
+}
+void expect_vector(const Vec3f& actual, const Vec3f& expected) {
+  EXPECT_LE((actual - expected).norm(), 1e-5f) << actual.transpose() << " is not " << expected.transpose();
+}
+
+TEST(Freed, AxesAndSignsAreTheManuals) {
+  const auto at = [](double pan, double tilt, double roll) {
+    const auto packet = parse_freed(freed(pan, tilt, roll, {1000, 2000, 1500}));
+    EXPECT_TRUE(packet.ok()) << packet.error().message;
+    return packet->camera;
+  };
+  const float half = std::sqrt(0.5f);
+  // Stage x, y, z is x, z, −y of the scene; zero looks along +Y of the stage.
+  expect_vector(eye(at(0, 0, 0)), {1, 1.5f, -2});
+  expect_vector(forward(at(0, 0, 0)), {0, 0, -1});
+  expect_vector(up(at(0, 0, 0)), {0, 1, 0});
+  expect_vector(forward(at(90, 0, 0)), {1, 0, 0});           // pan to the right
+  expect_vector(forward(at(0, 45, 0)), {0, half, -half});    // tilt up
+  expect_vector(up(at(0, 0, 90)), {1, 0, 0});                // clockwise from behind
+  expect_vector(forward(at(-90, 45, 0)), {-half, half, 0});  // tilt about the panned axis
+  expect_vector(up(at(180, 0, 90)), {-1, 0, 0});
+}
+
+TEST(Freed, ADamagedPacketIsRefused) {
+  const Bytes good = freed(10, -20, 1, {1, 2, 3});
+  ASSERT_TRUE(parse_freed(good).ok());
+  const auto refused = [](Bytes bytes, const char* why) {
+    const auto packet = parse_freed(bytes);
+    ASSERT_FALSE(packet.ok()) << why;
+    EXPECT_EQ(packet.error().kind, ErrorKind::bad_input);
+    EXPECT_NE(packet.error().message.find(why), std::string::npos) << packet.error().message;
+  };
+  refused({}, "0 bytes");
+  refused(Bytes(good.begin(), good.end() - 1), "28 bytes");
+  Bytes longer = good;
+  longer.push_back(0);
+  refused(longer, "30 bytes");
+  for (std::size_t i = 1; i < good.size(); ++i) {
+    Bytes wrong = good;
+    wrong[i] ^= 1;
+    refused(wrong, "checksum");
+  }
+  Bytes other = good;
+  other[0] = 0xD2;
+  set_checksum(other);
+  refused(other, "message type");
+  refused(freed(181, 0, 0, Vec3d::Zero()), "181");
+  EXPECT_TRUE(parse_freed(freed(-180, 90, 180, Vec3d::Constant(-131072))).ok()) << "the ends of the ranges";
+}
+
+constexpr const char* kSample =
+    R"({"static":{"camera":{"activeSensorPhysicalDimensions":{"width":36.0,"height":24.0}}},)"
+    R"("lens":{"pinholeFocalLength":24.0},"transforms":[{"id":"Stage","translation":{"x":10,"y":0,"z":0},)"
+    R"("rotation":{"pan":90,"tilt":0,"roll":0}},{"id":"Camera","translation":{"x":0,"y":2,"z":1.5},)"
+    R"("rotation":{"pan":0,"tilt":45,"roll":0}}]})";
+
+Bytes datagram(const std::string& payload, std::uint32_t offset = 0, bool last = true,
+               std::uint8_t encoding = 1) {
+  Bytes bytes = {'O', 'T', 'r', 'k', 0, encoding, 0, 1};
+  for (const int shift : {24, 16, 8, 0}) bytes.push_back(static_cast<std::uint8_t>(offset >> shift & 255));
+  const std::size_t length = payload.size() | (last ? 0x8000u : 0u);
+  bytes.push_back(static_cast<std::uint8_t>(length >> 8));
+  bytes.push_back(static_cast<std::uint8_t>(length & 255));
+  Bytes all = bytes;
+  all.insert(all.end(), payload.begin(), payload.end());
+  const std::uint16_t sum = fletcher16(all);
+  bytes.push_back(static_cast<std::uint8_t>(sum >> 8));
+  bytes.push_back(static_cast<std::uint8_t>(sum & 255));
+  bytes.insert(bytes.end(), payload.begin(), payload.end());
+  return bytes;
+}
+
+void expect_sample(const Result<std::optional<TrackedCamera>>& taken) {
+  ASSERT_TRUE(taken.ok()) << taken.error().message;
+  ASSERT_TRUE(taken->has_value());
+  const TrackedCamera& camera = **taken;
+  // Panned by 90° to the left about +Z, stage +Y is −X: (10 − 2, 0, 1.5) on the stage.
+  expect_vector(eye(camera), {8, 1.5f, 0});
+  const float half = std::sqrt(0.5f);
+  expect_vector(forward(camera), {-half, half, 0});
+  EXPECT_FLOAT_EQ(tracked_camera(camera, {}).yfov_rad, static_cast<float>(2 * std::atan(0.5)));
+}
+
+TEST(OpenTrackIo, TransformsAreComposedInOrderAndTheLensGivesTheField) {
+  OpenTrackIoReader reader;
+  expect_sample(reader.take(datagram(kSample)));
+  const std::string bare = kSample;
+  expect_sample(reader.take(Bytes(bare.begin(), bare.end())));
+}
+
+TEST(OpenTrackIo, FletcherSumsModulo256) {
+  // By hand: "OTrk" is 79, 84, 114, 107: sums 79, 163, 21, 128 and 79, 242, 7, 135.
+  const Bytes text = {'O', 'T', 'r', 'k'};
+  EXPECT_EQ(fletcher16(text), 0x8780);
+}
+
+TEST(OpenTrackIo, SegmentsMakeASampleOnlyWhereAllCome) {
+  const std::string sample = kSample;
+  const Bytes first = datagram(sample.substr(0, 100), 0, false);
+  const Bytes second = datagram(sample.substr(100, 50), 100, false);
+  const Bytes third = datagram(sample.substr(150), 150, true);
+  OpenTrackIoReader reader;
+  EXPECT_FALSE(reader.take(first)->has_value());
+  EXPECT_FALSE(reader.take(second)->has_value());
+  expect_sample(reader.take(third));
+  EXPECT_FALSE(reader.take(first)->has_value());
+  EXPECT_FALSE(reader.take(third).ok()) << "the second is missing";
+  EXPECT_FALSE(reader.take(second).ok());
+  EXPECT_FALSE(reader.take(first)->has_value());
+  expect_sample(reader.take(datagram(sample)));
+}
+
+TEST(OpenTrackIo, TheSensorIsRememberedFromTheSampleThatToldIt) {
+  OpenTrackIoReader reader;
+  const std::string later =
+      R"({"lens":{"pinholeFocalLength":12},"transforms":[{"translation":{"x":0,"y":0,"z":0}}]})";
+  EXPECT_FALSE((*reader.take(datagram(later)))->sensor_height_mm);
+  ASSERT_TRUE(reader.take(datagram(kSample)).ok());
+  EXPECT_EQ((*reader.take(datagram(later)))->sensor_height_mm, 24.0);
+}
+
+TEST(OpenTrackIo, AMalformedDatagramIsRefusedAndTheNextIsRead) {
+  OpenTrackIoReader reader;
+  const Bytes good = datagram(kSample);
+  std::vector<Bytes> wrong;
+  for (std::size_t length = 0; length < good.size(); length += 13)
+    wrong.emplace_back(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(length));
+  for (const std::size_t at : {0u, 4u, 5u, 14u, 15u, 40u}) {
+    wrong.push_back(good);
+    wrong.back()[at] ^= 0x11;
+  }
+  wrong.push_back(datagram(kSample, 0, true, 2));
+  for (const char* text :
+       {"", "{", "[]", "7", "null", R"({"transforms":[]})", R"({"transforms":[7]})", R"({"transforms":{}})",
+        R"({"transforms":[{"translation":{"x":NaN,"y":0,"z":0}}]})",
+        R"({"transforms":[{"translation":{"x":1e999,"y":0,"z":0}}]})",
+        R"({"transforms":[{"translation":{"x":1e7,"y":0,"z":0}}]})",
+        R"({"transforms":[{"translation":{"x":"1","y":0,"z":0}}]})",
+        R"({"transforms":[{"translation":{"x":1,"y":0}}]})",
+        R"({"transforms":[{"rotation":{"pan":1e30,"tilt":0,"roll":0}}]})",
+        R"({"transforms":[{"scale":{"x":1e300,"y":0,"z":0}}]})",
+        R"({"lens":{"pinholeFocalLength":0},"transforms":[{}]})",
+        R"({"lens":{"pinholeFocalLength":-5},"transforms":[{}]})", R"({"lens":[],"transforms":[{}]})"})
+    wrong.push_back(datagram(text));
+  for (const Bytes& bytes : wrong) {
+    const auto taken = reader.take(bytes);
+    EXPECT_FALSE(taken.ok()) << std::string(bytes.begin(), bytes.end());
+    if (taken.ok()) continue;
+    EXPECT_EQ(taken.error().kind, ErrorKind::bad_input);
+  }
+  expect_sample(reader.take(good));
+  EXPECT_FALSE(reader.take(datagram(R"({"lens":{}})"))->has_value()) << "no pose, and nothing wrong";
+}
+
+TEST(Tracking, OptionsNameProtocolAndAddress) {
+  const auto freed_options = parse_tracking("freed:127.0.0.1:6301");
+  ASSERT_TRUE(freed_options.ok());
+  EXPECT_EQ(freed_options->protocol, TrackingProtocol::freed);
+  EXPECT_EQ(freed_options->address.port, 6301);
+  EXPECT_TRUE(parse_tracking("opentrackio:239.135.1.5:55555").ok());
+  for (const char* wrong :
+       {"", "freed", "freed:", "freed:1.2.3.4", "vrpn:1.2.3.4:5", "opentrackio:1.2.3.4:99999"}) {
+    const auto parsed = parse_tracking(wrong);
+    ASSERT_FALSE(parsed.ok()) << wrong;
+    EXPECT_EQ(parsed.error().kind, ErrorKind::usage);
+  }
+}
+
+TEST(Tracking, TheFreshestPacketIsThePoseAndMalformedOnesChangeNothing) {
+  TrackingOptions options;
+  options.protocol = TrackingProtocol::freed;
+  options.address = {"127.0.0.1", 0};
+  options.freed_mm_per_unit = 0.01;
+  options.sensor_height_mm = 20;
+  auto stream = TrackingStream::open(options);
+  ASSERT_TRUE(stream.ok()) << stream.error().message;
+  EXPECT_FALSE(stream->update());
+  EXPECT_FALSE(stream->camera());
+  const int sender = ::socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(stream->port());
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const auto send = [&](const Bytes& bytes) {
+    ::sendto(sender, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to);
+  };
+  // Loopback delivers in order before sendto returns.
+  send(freed(0, 0, 0, {1000, 0, 0}, 1000));
+  send(freed(0, 0, 0, {2000, 0, 0}, 2500));
+  send({1, 2, 3});
+  EXPECT_TRUE(stream->update());
+  ASSERT_TRUE(stream->camera());
+  EXPECT_DOUBLE_EQ(stream->camera()->position_m.x(), 2);
+  EXPECT_DOUBLE_EQ(*stream->camera()->focal_length_mm, 25);
+  EXPECT_EQ(stream->malformed(), 1u);
+  send({});
+  EXPECT_FALSE(stream->update());
+  EXPECT_DOUBLE_EQ(stream->camera()->position_m.x(), 2) << "the last pose is kept";
+  EXPECT_EQ(stream->malformed(), 2u);
+  ::close(sender);
+}
+
+TEST(Tracking, APortThatIsTakenIsAFailureThatNamesIt) {
+  TrackingOptions options;
+  options.address = {"127.0.0.1", 0};
+  auto first = TrackingStream::open(options);
+  ASSERT_TRUE(first.ok());
+  options.address.port = first->port();
+  const auto second = TrackingStream::open(options);
+  ASSERT_FALSE(second.ok());
+  EXPECT_EQ(second.error().kind, ErrorKind::failed);
+  EXPECT_NE(second.error().message.find(std::to_string(first->port())), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lightwell::render
