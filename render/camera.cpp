@@ -108,6 +108,12 @@ void Orbit::zoom(float factor) {
   update();
 }
 
+void Orbit::slide(float right, float up) {
+  target_ += distance_ * (right * camera_.world_from_camera.col(0).head<3>() +
+                          up * camera_.world_from_camera.col(1).head<3>());
+  update();
+}
+
 void Orbit::update() {
   const Vec3f back(std::cos(elevation_rad_) * std::sin(azimuth_rad_), std::sin(elevation_rad_),
                    std::cos(elevation_rad_) * std::cos(azimuth_rad_));

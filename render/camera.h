@@ -32,6 +32,8 @@ class Orbit {
   void start_at(const SceneCamera& camera);
   void turn(float right_rad, float up_rad);
   void zoom(float factor);
+  // Moves camera and target, in distances between them.
+  void slide(float right, float up);
   [[nodiscard]] const SceneCamera& camera() const { return camera_; }
 
  private:

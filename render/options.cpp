@@ -109,10 +109,44 @@ Parsed parse_options(int argc, const char* const* argv) {
       ->capture_default_str();
   app.add_option("--plate-white", options.plate_white_cd_m2, "radiance that the plate's value 1 stands for")
       ->check(numbers_above_0_to(1e9, "above 0 to 1e9 cd/m²"));
+  std::string tracking;
+  std::optional<double> focal_mm_per_unit;
+  std::optional<double> sensor_height_mm;
+  app.add_option("--tracking", tracking,
+                 "camera pose from a tracker over UDP: opentrackio:ADDRESS:PORT or freed:ADDRESS:PORT, this "
+                 "machine's address or a multicast group; stage x, y, z is the scene's x, z, -y");
+  app.add_option("--sensor-height", sensor_height_mm,
+                 "of the tracked camera, for its field of view, where the stream does not tell it")
+      ->check(numbers_above_0_to(1e4, "above 0 to 10000 mm"))
+      ->needs("--tracking");
+  app.add_option("--freed-focal", focal_mm_per_unit, "focal length that a unit of FreeD's zoom stands for")
+      ->check(numbers_above_0_to(1e3, "above 0 to 1000 mm"))
+      ->needs("--tracking")
+      ->needs("--sensor-height");
+  app.add_flag("--probe", options.probe,
+               "a grey ball (Lambertian, albedo 0.18) under the lights and a mirror ball of the environment, "
+               "in the lower left corner");
   app.add_option("--tonemap", tone_map, "for window and PNG: reinhard, or none (clamped)")
       ->check(CLI::IsMember({"reinhard", "none"}))
       ->capture_default_str();
+  app.add_option("--exposure", options.look.exposure_ev100,
+                 "of window and PNG, EV at ISO 100, instead of what the picture asks for")
+      ->check(numbers_from(-20, 40, "-20 to 40 EV"));
+  std::string display = "srgb";
+  std::string false_colour = "none";
+  app.add_option("--display", display, "transfer function of window and PNG: srgb, rec709, linear")
+      ->check(CLI::IsMember({"srgb", "rec709", "linear"}))
+      ->capture_default_str();
+  app.add_option("--false-colour,--false-color", false_colour,
+                 "window and PNG show luminance as colours, with a legend: cd (cd/m²), stops (from middle "
+                 "grey at the exposure)")
+      ->check(CLI::IsMember({"none", "cd", "stops"}))
+      ->capture_default_str();
   app.add_flag("--headless", options.headless, "no window");
+  app.add_flag("--screen", options.screen,
+               "full screen on this machine's own screen where there is no desktop (KMS)")
+      ->excludes("--headless")
+      ->excludes("--size");
   app.add_option("--frames", options.frames, "end after this many frames (off-screen default: 1, live: none)")
       ->check(whole_numbers(1, 1000000000));
   app.add_option("--seconds", options.seconds, "end after this time")
@@ -156,7 +190,22 @@ Parsed parse_options(int argc, const char* const* argv) {
   if (options.background_environment && !options.light_set.empty())
     return {std::nullopt,
             complain("--background environment: a light set has no picture of its environment")};
-  options.tone_map = tone_map == "none" ? ToneMap::none : ToneMap::reinhard;
+  options.look.operation = tone_map == "none" ? ToneMap::none : ToneMap::reinhard;
+  options.look.display = display == "rec709"   ? Display::rec709
+                         : display == "linear" ? Display::linear
+                                               : Display::srgb;
+  options.look.false_colour = false_colour == "cd"      ? FalseColour::luminance
+                              : false_colour == "stops" ? FalseColour::stops
+                                                        : FalseColour::none;
+  if (!tracking.empty()) {
+    const auto parsed = parse_tracking(tracking);
+    if (!parsed) return {std::nullopt, complain(parsed.error().message)};
+    options.tracking = *parsed;
+    options.tracking->freed_mm_per_unit = focal_mm_per_unit;
+    options.tracking->sensor_height_mm = sensor_height_mm;
+    if (focal_mm_per_unit && parsed->protocol != TrackingProtocol::freed)
+      return {std::nullopt, complain("--freed-focal: only FreeD's zoom needs it")};
+  }
   return {options, 0};
 }
 

@@ -10,7 +10,8 @@
 #include "lighting/decomposition/decompose.h"
 #include "lighting/light_set.h"
 #include "render/frame_name.h"
-#include "render/tone_mapper.h"
+#include "render/look.h"
+#include "render/tracking_stream.h"
 
 namespace lightwell::render {
 
@@ -38,8 +39,11 @@ struct Options {
   bool background_environment = false;
   std::string plate;  // picture or numbered sequence; empty: none
   std::optional<float> plate_white_cd_m2;
-  ToneMap tone_map = ToneMap::reinhard;
+  std::optional<TrackingOptions> tracking;
+  bool probe = false;  // grey and mirror ball in a corner
+  Look look;
   bool headless = false;
+  bool screen = false;  // this machine's own, without a desktop
   std::optional<int> frames;
   std::optional<double> seconds;
   std::vector<FrameName> outputs;

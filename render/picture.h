@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lighting/result.h"
+#include "render/look.h"
 
 namespace lightwell::render {
 
@@ -20,7 +21,8 @@ struct RadiancePicture {
 struct DisplayPicture {
   int width = 0;
   int height = 0;
-  std::vector<std::uint8_t> rgba;  // sRGB, straight alpha
+  std::vector<std::uint8_t> rgba;  // straight alpha
+  Display display = Display::srgb;
 };
 
 // Written whole or not at all. failed: folder missing, disk full.

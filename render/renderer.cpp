@@ -135,15 +135,26 @@ Status Renderer::resize(Sums& sums) const {
   return {};
 }
 
+Status Renderer::make_unshadowed() {
+  if (unshadowed_.id() != 0) return {};
+  auto program = gl::make_program("fullscreen_vertex", "shade_fragment",
+                                  shading_defines_ + map_facts(true, options_.simplify_casters));
+  if (!program) return program.error();
+  unshadowed_ = std::move(program).value();
+  glUniformBlockBinding(unshadowed_.id(), glGetUniformBlockIndex(unshadowed_.id(), "Lights"), 0);
+  return {};
+}
+
+Status Renderer::set_shadows(bool on) {
+  shadows_ = on;
+  return on ? Status() : make_unshadowed();
+}
+
 Status Renderer::set_plate(const Plate& plate, float white) {
   if (!compositor_) {
     auto compositor = Compositor::create();
     if (!compositor) return compositor.error();
-    auto program = gl::make_program("fullscreen_vertex", "shade_fragment",
-                                    shading_defines_ + map_facts(true, options_.simplify_casters));
-    if (!program) return program.error();
-    unshadowed_ = std::move(program).value();
-    glUniformBlockBinding(unshadowed_.id(), glGetUniformBlockIndex(unshadowed_.id(), "Lights"), 0);
+    if (Status s = make_unshadowed(); !s) return s;
     compositor_.emplace(std::move(compositor).value());
     if (Status s = compositor_->resize(options_.width, options_.height); !s) return s;
     if (Status s = resize(unshadowed_sums_); !s) return s;
@@ -243,7 +254,8 @@ void Renderer::shade(const View& view, int light_count, const LightSet& lights, 
   const GLuint so_far = sums_.last().texture.id();
   if (compositor_)
     shade_surfaces(unshadowed_, unshadowed_sums_, view, light_count, lights, first_block, start_sum, weight);
-  shade_surfaces(surfaces_, sums_, view, light_count, lights, first_block, start_sum, weight);
+  shade_surfaces(shadows_ ? surfaces_ : unshadowed_, sums_, view, light_count, lights, first_block, start_sum,
+                 weight);
 
   const Uniforms background(background_);
   background.set_texture("so_far", 0, so_far);
@@ -292,9 +304,36 @@ void Renderer::shade_surfaces(const gl::Program& program, Sums& sums, const View
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
+Status Renderer::lay_over(const RadiancePicture& picture, int left, int bottom) {
+  if (lay_over_.id() == 0) {
+    auto program = gl::make_program("fullscreen_vertex", "lay_over_fragment");
+    if (!program) return program.error();
+    lay_over_ = std::move(program).value();
+  }
+  const gl::Texture texture = gl::make_texture(GL_RGBA32F, picture.width, picture.height);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, picture.width, picture.height, GL_RGBA, GL_FLOAT,
+                  picture.rgba.data());
+  glBindFramebuffer(GL_FRAMEBUFFER, shown().framebuffer);
+  glViewport(left, bottom, picture.width, picture.height);
+  glDisable(GL_DEPTH_TEST);
+  const Uniforms over(lay_over_);
+  over.set_texture("over_map", 0, texture.id());
+  glUniform2i(over.place("corner"), left, bottom);
+  glBindVertexArray(no_vertices_.id());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  return {};
+}
+
 void Renderer::tone_map(ToneMap operation, double dt_s) {
+  Look look = tone_mapper_.look();
+  look.operation = operation;
+  tone_mapper_.set_look(look);
+  tone_map(dt_s);
+}
+
+void Renderer::tone_map(double dt_s) {
   const double start = now_ms();
-  tone_mapper_.adapt(shown().texture, operation, dt_s);
+  tone_mapper_.adapt(shown().texture, dt_s);
   tone_mapper_.draw(shown().texture);
   lap(start, times_.tonemap_ms);
 }

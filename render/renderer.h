@@ -53,9 +53,21 @@ class Renderer {
   Status set_plate(const Plate& plate, float white);
   // environment_turn_rad turns the shown environment about +Y (a light at azimuth λ comes to λ + angle).
   Status render(const LightSet& lights, const SceneCamera& camera, double environment_turn_rad = 0);
+  // Puts opaque pixels of a picture over the last one rendered. left, bottom: pixels from its lower left corner.
+  Status lay_over(const RadiancePicture& picture, int left, int bottom);
+  void set_look(const Look& look) { tone_mapper_.set_look(look); }
+  [[nodiscard]] double exposure_ev100() const { return tone_mapper_.exposure_ev100(); }
+  // Light as if nothing cast shadows, or with them.
+  Status set_shadows(bool on);
+  // Bounds what is seen of the scene, but for what supports it.
+  [[nodiscard]] const Sphere& scene_bounds() const { return casters_.scene; }
+  void tone_map(double dt_s);
+  // The same with another operator, which stays.
   void tone_map(ToneMap operation, double dt_s);
   void present() const { tone_mapper_.draw_to_window(shown().texture); }
 
+  [[nodiscard]] int width() const { return options_.width; }
+  [[nodiscard]] int height() const { return options_.height; }
   [[nodiscard]] RadiancePicture radiance() const;
   [[nodiscard]] DisplayPicture display() const { return tone_mapper_.read(); }
   // Waits until everything is drawn.
@@ -84,6 +96,7 @@ class Renderer {
   };
   [[nodiscard]] Shown shown() const;
   Status resize(Sums& sums) const;
+  Status make_unshadowed();
   Status render_samples(std::span<const LightRow> rows, const LightSet& lights, const SceneCamera& camera,
                         int first_sample, int end_sample, double environment_turn_rad);
   // Adds the block of lights and, with the first of a sample, what does not depend on them.
@@ -102,12 +115,14 @@ class Renderer {
   Casters casters_;
   gl::Program surfaces_;
   gl::Program background_;
+  gl::Program lay_over_;  // made when it is first needed
   gl::Buffer light_block_;
   gl::VertexArray no_vertices_;
   gl::Texture environment_;
   bool show_environment_ = false;
   Sums sums_;
-  // Over a plate: light as if nothing cast a shadow.
+  // Light as if nothing cast a shadow.
+  bool shadows_ = true;
   std::optional<Compositor> compositor_;
   std::string shading_defines_;
   gl::Program unshadowed_;

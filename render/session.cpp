@@ -14,8 +14,11 @@
 #include "interface/printable.h"
 #include "render/egl_context.h"
 #include "render/gltf_scene.h"
+#include "render/kms_screen.h"
 #include "render/light_source.h"
+#include "render/overlay.h"
 #include "render/plate.h"
+#include "render/probe_balls.h"
 #include "render/renderer.h"
 #include "render/scene_motion.h"
 #include "render/statistics.h"
@@ -68,7 +71,7 @@ Result<std::unique_ptr<LightSource>> open_lights(const Options& options) {
     LiveOptions live;
     live.dds = {options.domain, options.interface};
     live.max_lights = options.shadow_maps > 0 ? options.shadow_maps : kLiveLights;
-    live.with_environment = options.background_environment;
+    live.with_environment = options.background_environment || options.probe;
     return live_lights(live);
   }
   if (!options.environment.empty())
@@ -100,14 +103,17 @@ bool has_display() {
 class Session {
  public:
   Session(const Options& options, const std::atomic<bool>& stop, Scene& scene, ChosenCamera camera,
-          LightSource& source, PlateSource* plates)
+          LightSource& source, PlateSource* plates, TrackingStream* tracking)
       : options_(options),
         stop_(stop),
         scene_(scene),
         motion_(scene),
         camera_(std::move(camera)),
         source_(source),
-        plates_(plates) {}
+        plates_(plates),
+        tracking_(tracking),
+        look_(options.look),
+        show_probe_(options.probe) {}
 
   Status prepare() {
     if (Status s = check_driver(); !s) return s;
@@ -120,6 +126,7 @@ class Session {
     auto renderer = Renderer::create(scene_, renderer_options);
     if (!renderer) return renderer.error();
     renderer_.emplace(std::move(renderer).value());
+    renderer_->set_look(look_);
     if (plates_ != nullptr)
       if (Status s = show_plate(); !s) return s;
     statistics_.shadow_size = options_.shadow_size;
@@ -137,6 +144,7 @@ class Session {
       // Live frames are as many as lights arrive: the same light twice would be the same picture.
       if (!source_.ready() || (options_.live && !*fresh)) continue;
       if (Status s = move_scene(options_.live); !s) return s;
+      follow_tracking();
       if (Status s = render(camera_.camera); !s) return s;
     }
     if (frame_ == 0 && !stop_)
@@ -144,31 +152,56 @@ class Session {
     return finish();
   }
 
+  Status run_screen(KmsScreen& screen) {
+    while (!over(options_.frames)) {
+      const auto fresh = source_.update(frame_, std::chrono::milliseconds(0));
+      if (!fresh) return fresh.error();
+      const auto [width, height] = screen.size();
+      if (Status s = renderer_->resize(width, height); !s) return s;
+      if (Status s = move_scene(options_.live || !options_.frames); !s) return s;
+      follow_tracking();
+      SceneCamera camera = camera_.camera;
+      camera.aspect = 0;  // the screen's own
+      if (Status s = render(camera); !s) return s;
+      renderer_->present();
+      if (Status s = screen.show(); !s) return s;
+    }
+    return finish();
+  }
+
   Status run_window(Window& window) {
+    auto overlay = Overlay::create();
+    if (!overlay) return overlay.error();
+    auto rate_time = Clock::now();
     int shown = 0;
-    auto title_time = Clock::now();
     while (!over(options_.frames) && !window.closed()) {
       const auto fresh = source_.update(frame_, std::chrono::milliseconds(0));
       if (!fresh) return fresh.error();
-      const bool changed = window.take_changed();
+      const bool tracked = follow_tracking();
+      const bool changed = window.take_changed() || tracked;
       const auto [width, height] = window.size();
       const bool moves = scene_.rig.moves();
       if (width > 0 && height > 0 && (*fresh || changed || moves || options_.frames.has_value())) {
         if (Status s = renderer_->resize(width, height); !s) return s;
         if (Status s = move_scene(options_.live || !options_.frames); !s) return s;
-        if (moves) window.follow(camera_.camera);
+        if (moves || tracked) window.follow(camera_.camera);
+        if (Status s = apply(window); !s) return s;
         if (Status s = render(window.camera()); !s) return s;
         renderer_->present();
+        overlay->draw(overlay_content(window), width, height);
         window.show();
         ++shown;
+        if (window.take_screenshot())
+          if (Status s = save_screenshot(); !s) say(s.error().message);
         window.poll();
       } else {
         window.poll(0.01);
       }
-      if (seconds_since(title_time) >= 0.5) {
-        window.set_title(title(shown / seconds_since(title_time)));
-        title_time = Clock::now();
+      if (const double elapsed_s = seconds_since(rate_time); elapsed_s >= 0.5) {
+        fps_ = shown / elapsed_s;
+        rate_time = Clock::now();
         shown = 0;
+        window.set_title(title());
       }
     }
     return finish();
@@ -201,6 +234,30 @@ class Session {
            (options_.seconds && seconds_since(start_) >= *options_.seconds);
   }
 
+  // The camera as a tracker has it, where there is one; true where it moved.
+  bool follow_tracking() {
+    if (tracking_ == nullptr || !tracking_->update()) return false;
+    camera_.camera = tracked_camera(*tracking_->camera(), camera_.camera);
+    camera_.of_scene.reset();
+    return true;
+  }
+
+  // Balls a fifth of the picture high, side by side; too small a picture has none.
+  Status show_probe(const SceneCamera& camera) {
+    if (!show_probe_) return {};
+    const int diameter = std::min(renderer_->height() / 5, renderer_->width() / 3);
+    const int margin = diameter / 8;
+    if (diameter < 8) return {};
+    if (Status s = renderer_->lay_over(grey_ball(source_.lights(), camera.world_from_camera, diameter),
+                                       margin, margin);
+        !s)
+      return s;
+    if (source_.environment() == nullptr) return {};
+    return renderer_->lay_over(mirror_ball(*source_.environment(), source_.environment_turn_rad(),
+                                           camera.world_from_camera, diameter),
+                               2 * margin + diameter, margin);
+  }
+
   Status show_plate() {
     if (!plates_->plate().remark.empty()) say(plates_->plate().remark);
     return renderer_->set_plate(plates_->plate(), options_.plate_white_cd_m2.value_or(1));
@@ -224,9 +281,10 @@ class Session {
     const double dt_s = options_.live ? seconds_since(last_frame_) : 0.04;
     last_frame_ = start;
     if (Status s = renderer_->render(source_.lights(), camera, source_.environment_turn_rad()); !s) return s;
-    renderer_->tone_map(options_.tone_map, dt_s);
+    if (Status s = show_probe(camera); !s) return s;
+    renderer_->tone_map(dt_s);
     renderer_->finish();
-    times.ms = seconds_since(start) * 1e3;
+    times.ms = last_ms_ = seconds_since(start) * 1e3;
     times.cpu_ms = cpu_ms() - cpu_start;
     times.passes = renderer_->pass_times();
     if (!options_.stats.empty()) statistics_.frames.push_back(times);
@@ -256,18 +314,79 @@ class Session {
     return {};
   }
 
-  [[nodiscard]] std::string title(double fps) const {
-    char text[160];
-    std::snprintf(text, sizeof text, "Lightwell – %.1f fps – %zu lights", fps,
-                  source_.lights().lights.size());
-    std::string line = text;
-    if (const auto age = source_.age()) {
-      std::snprintf(text, sizeof text, " – light %.1f s old", std::chrono::duration<double>(*age).count());
-      line += text;
-    } else if (!source_.ready()) {
-      line += " – waiting for light";
+  // What keys of the window switched.
+  Status apply(Window& window) {
+    show_probe_ = options_.probe != window.switches().probe;
+    if (const double stops = window.take_exposure_steps(); stops != 0) {
+      look_.exposure_ev100 = renderer_->exposure_ev100() - stops;
+      renderer_->set_look(look_);
     }
+    return renderer_->set_shadows(window.switches().shadows);
+  }
+
+  [[nodiscard]] Overlay::Content overlay_content(const Window& window) const {
+    Overlay::Content content;
+    const WindowSwitches& on = window.switches();
+    if (on.numbers) content.numbers = numbers();
+    if (on.help) content.help = Window::help_lines();
+    if (!on.dome) return content;
+    Sphere dome = renderer_->scene_bounds();
+    dome.radius *= 1.5f;  // clear of the objects
+    const int width = renderer_->width();
+    const int height = renderer_->height();
+    const View view = make_view(window.camera(), width, height);
+    content.markers = dome_markers(source_.lights().lights, dome, view, width, height);
+    content.lines = dome_lines(dome, view, width, height);
+    return content;
+  }
+
+  // Into the folder that the program was started in, under the first number that is free.
+  Status save_screenshot() {
+    for (int number = 1; number < 10000; ++number) {
+      char name[32];
+      std::snprintf(name, sizeof name, "lightwell-%04d", number);
+      const std::filesystem::path png = std::string(name) + ".png";
+      const std::filesystem::path exr = std::string(name) + ".exr";
+      std::error_code ignored;
+      if (std::filesystem::exists(png, ignored) || std::filesystem::exists(exr, ignored)) continue;
+      if (Status s = write_png(png, renderer_->display()); !s) return s;
+      if (Status s = write_exr(exr, renderer_->radiance()); !s) return s;
+      say("wrote " + png.string() + " and " + exr.string());
+      return {};
+    }
+    return Error{ErrorKind::failed, "no screenshot: lightwell-0001.png to -9999.png are all there"};
+  }
+
+  template <class... Values>
+  static std::string text(const char* format, Values... values) {
+    char line[160];
+    std::snprintf(line, sizeof line, format, values...);
     return line;
+  }
+
+  [[nodiscard]] std::string light_state() const {
+    if (const auto age = source_.age())
+      return text("light %.1f s old", std::chrono::duration<double>(*age).count());
+    return source_.ready() ? "" : "waiting for light";
+  }
+
+  [[nodiscard]] std::string title() const {
+    const std::string state = light_state();
+    return text("Lightwell – %.1f fps – %zu lights", fps_, source_.lights().lights.size()) +
+           (state.empty() ? "" : " – " + state);
+  }
+
+  [[nodiscard]] std::vector<std::string> numbers() const {
+    std::vector<std::string> lines = {text("%.1f fps, %.1f ms a frame", fps_, last_ms_),
+                                      text("%zu lights, %zu shadow maps of %d", statistics_.lights,
+                                           statistics_.shadow_maps, options_.shadow_size)};
+    if (const std::string state = light_state(); !state.empty()) lines.push_back(state);
+    if (statistics_.predicted_error > 0)
+      lines.push_back(
+          text("predicted error of shadows %.2g", static_cast<double>(statistics_.predicted_error)));
+    lines.push_back(text("EV %.1f%s", renderer_->exposure_ev100(), look_.exposure_ev100 ? " by hand" : ""));
+    lines.emplace_back("h: keys");
+    return lines;
   }
 
   const Options& options_;
@@ -277,8 +396,13 @@ class Session {
   ChosenCamera camera_;
   LightSource& source_;
   PlateSource* plates_;
+  TrackingStream* tracking_;
   std::optional<Renderer> renderer_;
   Statistics statistics_;
+  Look look_;
+  bool show_probe_ = false;
+  double fps_ = 0;
+  double last_ms_ = 0;
   int frame_ = 0;
   int shown_environment_ = 0;
   Clock::time_point start_ = Clock::now();
@@ -315,26 +439,44 @@ Status run_session(const Options& chosen, const std::atomic<bool>& stop) {
       say(options.plate + ": its white counts as 1 cd/m²; --plate-white says otherwise");
   }
 
+  if (options.probe && !options.light_set.empty())
+    say("--probe: a light set has no picture of its environment; without the mirror ball");
+  std::optional<TrackingStream> tracking;
+  if (options.tracking) {
+    auto opened = TrackingStream::open(*options.tracking);
+    if (!opened) return opened.error();
+    tracking.emplace(std::move(opened).value());
+  }
+
   // Made after the context and gone before it.
-  const auto run = [&](Window* window) -> Status {
-    Session session(options, stop, *scene, *camera, **source, plates ? &*plates : nullptr);
+  const auto run = [&](Window* window, KmsScreen* screen) -> Status {
+    Session session(options, stop, *scene, *camera, **source, plates ? &*plates : nullptr,
+                    tracking ? &*tracking : nullptr);
     if (Status s = session.prepare(); !s) return s;
+    if (screen != nullptr) return session.run_screen(*screen);
     return window != nullptr ? session.run_window(*window) : session.run_off_screen();
   };
   const bool has_purpose =
       !options.outputs.empty() || options.frames || options.seconds || !options.stats.empty();
+  if (options.screen) {
+    auto screen = KmsScreen::open();
+    if (!screen) return screen.error();
+    return run(nullptr, screen->get());
+  }
   if (!options.headless && has_display()) {
     auto window = Window::open(options.width, options.height, Orbit(camera->camera, *scene));
-    if (window) return run(window->get());
+    if (window) return run(window->get(), nullptr);
     if (!has_purpose) return window.error();
     say(window.error().message + "; rendering off-screen");
   } else if (!options.headless && !has_purpose) {
-    return Error{ErrorKind::failed,
-                 "no display for a window; --headless with --out, --frames or --seconds renders without"};
+    return Error{
+        ErrorKind::failed,
+        "no display for a window; --screen takes this machine's own, --headless with --out, --frames or "
+        "--seconds renders without"};
   }
   auto context = EglContext::create();
   if (!context) return context.error();
-  return run(nullptr);
+  return run(nullptr, nullptr);
 }
 
 }  // namespace lightwell::render

@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/false_colour.h"
+
 namespace lightwell::render {
 namespace {
 
-constexpr int kBlock = 64;       // pixels a side that one work group measures (measure_compute.glsl)
-constexpr double kKey = 0.18;    // middle grey (Reinhard et al. 2002, eq. 2)
-constexpr double kAdaptS = 0.4;  // time constant: fast enough to follow a walk, too slow to follow flicker
+constexpr int kBlock = 64;      // pixels a side that one work group measures (measure_compute.glsl)
+constexpr int kColours = 1024;  // more than an eye tells apart on the scale
 
 int blocks(int pixels) {
   return (pixels + kBlock - 1) / kBlock;
@@ -27,6 +28,8 @@ Result<ToneMapper> ToneMapper::create() {
   t.measure_ = std::move(measure).value();
   t.program_ = std::move(program).value();
   t.no_vertices_ = gl::make_vertex_array();
+  t.colours_ = gl::make_texture(GL_RGBA8, 1, 1);
+  t.legend_ = gl::make_texture(GL_RGBA8, 1, 1);
   return t;
 }
 
@@ -40,12 +43,36 @@ Status ToneMapper::resize(int width, int height) {
   auto framebuffer = gl::make_framebuffer({picture_.id()}, 0);
   if (!framebuffer) return framebuffer.error();
   framebuffer_ = std::move(framebuffer).value();
+  make_false_colours();
   return {};
 }
 
-void ToneMapper::adapt(GLuint radiance, ToneMap operation, double dt_s) {
-  operation_ = operation;
-  if (operation == ToneMap::none) return;
+void ToneMapper::set_look(const Look& look) {
+  look_ = look;
+  make_false_colours();
+}
+
+void ToneMapper::make_false_colours() {
+  legend_width_ = legend_height_ = 0;
+  if (look_.false_colour == FalseColour::none) return;
+  const FalseColourScale scale{look_.false_colour};
+  std::vector<std::uint8_t> row;
+  for (const Rgb8& colour : scale.table(kColours))
+    row.insert(row.end(), {colour[0], colour[1], colour[2], std::uint8_t{255}});
+  colours_ = gl::make_texture(GL_RGBA8, kColours, 1);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kColours, 1, GL_RGBA, GL_UNSIGNED_BYTE, row.data());
+  const Legend legend = make_legend(scale, height_);
+  if (legend.width == 0 || legend.width > width_ / 2) return;
+  legend_width_ = legend.width;
+  legend_height_ = legend.height;
+  legend_ = gl::make_texture(GL_RGBA8, legend.width, legend.height);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, legend.width, legend.height, GL_RGBA, GL_UNSIGNED_BYTE,
+                  legend.rgba.data());
+}
+
+void ToneMapper::adapt(GLuint radiance, double dt_s) {
+  const bool needed = look_.operation == ToneMap::reinhard || look_.false_colour == FalseColour::stops;
+  if (!needed || look_.exposure_ev100) return;
   glUseProgram(measure_.id());
   glUniform1i(gl::uniform(measure_, "radiance_map"), 0);
   gl::bind_texture(0, radiance);
@@ -66,10 +93,32 @@ void ToneMapper::adapt(GLuint radiance, ToneMap operation, double dt_s) {
   }
   glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
   if (!(lit > 0) || !std::isfinite(log_sum) || !std::isfinite(largest)) return;  // all black: keep what was
-  const double blend = adapted_ ? 1 - std::exp(-std::max(dt_s, 0.0) / kAdaptS) : 1;
-  log_average_ += blend * (log_sum / lit - log_average_);
-  log_white_ += blend * (std::log(largest) - log_white_);
-  adapted_ = true;
+  adaptation_.follow(log_sum / lit, std::log(largest), dt_s);
+}
+
+ToneMapper::Parameters ToneMapper::parameters() const {
+  Parameters p;
+  const auto& ev100 = look_.exposure_ev100;
+  if (ev100) {
+    p.middle_cd_m2 = metered_luminance_cd_m2(*ev100);
+    if (look_.operation == ToneMap::none) {
+      p.scale = 1 / saturating_luminance_cd_m2(*ev100);
+      return p;
+    }
+    p.scale = kMiddleGrey / p.middle_cd_m2;
+    p.white = kMiddleGrey * std::exp2(kWhiteStops);
+    return p;
+  }
+  if (!adaptation_.adapted()) return p;
+  p.middle_cd_m2 = adaptation_.average_cd_m2();
+  if (look_.operation == ToneMap::none) return p;
+  p.scale = kMiddleGrey / p.middle_cd_m2;
+  p.white = p.scale * adaptation_.white_cd_m2();
+  return p;
+}
+
+double ToneMapper::exposure_ev100() const {
+  return std::log2(parameters().middle_cd_m2 / metered_luminance_cd_m2(0));
 }
 
 void ToneMapper::draw(GLuint radiance) {
@@ -80,17 +129,34 @@ void ToneMapper::draw_to_window(GLuint radiance) const {
 }
 
 void ToneMapper::draw_into(GLuint framebuffer, GLuint radiance, bool straight_alpha) const {
-  const double scale = adapted_ ? kKey / std::exp(log_average_) : 1;
-  const double white = adapted_ ? scale * std::exp(log_white_) : 1;
+  const Parameters p = parameters();
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   glViewport(0, 0, width_, height_);
   glDisable(GL_DEPTH_TEST);
   glUseProgram(program_.id());
   glUniform1i(gl::uniform(program_, "radiance_map"), 0);
-  glUniform1i(gl::uniform(program_, "reinhard"), operation_ == ToneMap::reinhard ? 1 : 0);
-  glUniform1f(gl::uniform(program_, "scale"), static_cast<float>(scale));
-  glUniform1f(gl::uniform(program_, "white_squared"), static_cast<float>(std::max(white * white, 1e-12)));
-  glUniform1i(gl::uniform(program_, "straight_alpha"), straight_alpha ? 1 : 0);
+  const auto set = [&](const char* name, int value) { glUniform1i(gl::uniform(program_, name), value); };
+  const auto set_float = [&](const char* name, double value) {
+    glUniform1f(gl::uniform(program_, name), static_cast<float>(value));
+  };
+  set("reinhard", look_.operation == ToneMap::reinhard ? 1 : 0);
+  set_float("scale", p.scale);
+  set_float("white_squared", std::max(p.white * p.white, 1e-12));
+  set("straight_alpha", straight_alpha ? 1 : 0);
+  set("display", static_cast<int>(look_.display));
+  set("false_colour", look_.false_colour != FalseColour::none ? 1 : 0);
+  if (look_.false_colour != FalseColour::none) {
+    const FalseColourScale scale{look_.false_colour};
+    const double zero = look_.false_colour == FalseColour::stops ? std::log2(p.middle_cd_m2) : 0;
+    set_float("scale_low", scale.low() + zero);
+    set_float("scale_high", scale.high() + zero);
+  }
+  set("colours", 1);
+  set("legend", 2);
+  glUniform2i(gl::uniform(program_, "legend_size"), legend_width_, legend_height_);
+  set("picture_height", height_);
+  gl::bind_texture(1, colours_.id());
+  gl::bind_texture(2, legend_.id());
   gl::bind_texture(0, radiance);
   glBindVertexArray(no_vertices_.id());
   glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -98,7 +164,8 @@ void ToneMapper::draw_into(GLuint framebuffer, GLuint radiance, bool straight_al
 
 DisplayPicture ToneMapper::read() const {
   DisplayPicture picture{width_, height_,
-                         std::vector<std::uint8_t>(static_cast<std::size_t>(width_ * height_) * 4)};
+                         std::vector<std::uint8_t>(static_cast<std::size_t>(width_ * height_) * 4),
+                         look_.false_colour != FalseColour::none ? Display::srgb : look_.display};
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, picture.rgba.data());

@@ -3,42 +3,57 @@
 #pragma once
 
 #include "render/gl_objects.h"
+#include "render/look.h"
 #include "render/picture.h"
 
 namespace lightwell::render {
 
-enum class ToneMap { none, reinhard };
-
-// Linear radiance to 8 bit sRGB. Reinhard's global operator (Reinhard et al. 2002, eqs. 1, 2 and 4) with its
-// two parameters, the log-average luminance and the white point, smoothed over time (Havran et al. 2005,
-// section 4.4).
+// Linear radiance to 8 bit codes of a display. Reinhard's global operator (Reinhard et al. 2002, eqs. 1, 2 and 4) with
+// its two parameters, the log-average luminance and the white point, followed over time (Adaptation) or set by an
+// exposure: then the log-average luminance is the metered one, and white lies kWhiteStops above it. Without an operator
+// the saturating luminance is white, or radiance 1. False colours show luminance as it is measured.
 class ToneMapper {
  public:
+  static constexpr double kWhiteStops = 5;
+
   static Result<ToneMapper> create();
   Status resize(int width, int height);
+  void set_look(const Look& look);
 
   // Measures radiance and moves the parameters; the first frame sets them. dt_s: time since the frame before.
-  void adapt(GLuint radiance, ToneMap operation, double dt_s);
+  void adapt(GLuint radiance, double dt_s);
   // Draws into the 8 bit picture, or into the window's framebuffer.
   void draw(GLuint radiance);
   void draw_to_window(GLuint radiance) const;
   [[nodiscard]] DisplayPicture read() const;
+  [[nodiscard]] const Look& look() const { return look_; }
+  // By hand, or what the picture asked for.
+  [[nodiscard]] double exposure_ev100() const;
 
  private:
+  struct Parameters {
+    double scale = 1;         // of radiance, before the operator
+    double white = 1;         // scaled luminance that becomes white
+    double middle_cd_m2 = 1;  // luminance of middle grey
+  };
+  [[nodiscard]] Parameters parameters() const;
+  void make_false_colours();
   void draw_into(GLuint framebuffer, GLuint radiance, bool straight_alpha) const;
 
   int width_ = 0;
   int height_ = 0;
-  ToneMap operation_ = ToneMap::reinhard;
-  bool adapted_ = false;
-  double log_average_ = 0;
-  double log_white_ = 0;
+  Look look_;
+  Adaptation adaptation_;
   gl::Program measure_;
   gl::Program program_;
   gl::VertexArray no_vertices_;
   gl::Buffer blocks_;
   gl::Texture picture_;
   gl::Framebuffer framebuffer_;
+  gl::Texture colours_;  // of false colour, one row
+  gl::Texture legend_;
+  int legend_width_ = 0;
+  int legend_height_ = 0;
 };
 
 }  // namespace lightwell::render

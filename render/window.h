@@ -4,6 +4,8 @@
 
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "lighting/result.h"
 #include "render/camera.h"
@@ -12,8 +14,17 @@ struct GLFWwindow;
 
 namespace lightwell::render {
 
-// A window with an OpenGL ES 3.1 context, current on the calling thread. Dragging turns the camera, the wheel
-// zooms, Esc and q close. One at a time, on the main thread.
+// What keys of a window switch.
+struct WindowSwitches {
+  bool help = false;
+  bool numbers = true;
+  bool dome = false;
+  bool shadows = true;
+  bool probe = false;
+};
+
+// A window with an OpenGL ES 3.1 context, current on the calling thread. Dragging turns the camera, or moves it with the
+// right button, the wheel zooms; keys: help_lines(). One at a time, on the main thread.
 class Window {
  public:
   // failed: no display, or none with OpenGL ES 3.1.
@@ -34,14 +45,29 @@ class Window {
   // The camera stands there, until a user moves it.
   void follow(const SceneCamera& camera);
   void set_title(const std::string& title);
+  [[nodiscard]] const WindowSwitches& switches() const { return switches_; }
+  // True once after the key for it.
+  [[nodiscard]] bool take_screenshot() { return std::exchange(screenshot_, false); }
+  // Exposure values that keys asked for since the last call.
+  [[nodiscard]] double take_exposure_steps() { return std::exchange(exposure_steps_, 0.0); }
+  // What each key does, a line each.
+  static std::vector<std::string> help_lines();
   [[nodiscard]] GLFWwindow* handle() const { return window_; }
 
  private:
   Window(GLFWwindow* window, Orbit orbit);
+  void press(int key);
+  void drag(double x, double y);
+  void toggle_full_screen();
   GLFWwindow* window_ = nullptr;
   Orbit orbit_;
   bool changed_ = true;
   bool taken_ = false;  // a user moved the camera
+  WindowSwitches switches_;
+  bool screenshot_ = false;
+  double exposure_steps_ = 0;
+  SceneCamera followed_;                // where the camera would stand without a user
+  int windowed_[4] = {0, 0, 640, 480};  // place and size to return to from full screen
   double last_x_ = 0;
   double last_y_ = 0;
 };

@@ -103,15 +103,26 @@ TEST_F(ToneMapping, ExposureFollowsAStepGraduallyAndArrives) {
     return static_cast<int>(renderer->display().rgba[0]);
   };
   show(100);
-  const int first = show(1);
-  EXPECT_LT(first, 100);  // still exposed for the bright light
+  const int first = show(30);  // 1.7 stops
+  EXPECT_LT(first, 150);       // still exposed for the bright light
   int previous = first;
   for (int i = 0; i < 100; ++i) {
-    const int now = show(1);
+    const int now = show(30);
     EXPECT_GE(now, previous);
     previous = now;
   }
   EXPECT_GE(previous, 254);
+}
+
+TEST_F(ToneMapping, ACutIsExposedAtOnce) {
+  const Scene scene = ground();
+  auto renderer = render::Renderer::create(scene, {});
+  ASSERT_TRUE(renderer.ok());
+  for (const float radiance : {100.0f, 1.0f, 1e4f}) {
+    ASSERT_TRUE(renderer->render(uniform_light(radiance), camera_at({0, 3, 0}, {0, 0, 0})));
+    renderer->tone_map(render::ToneMap::reinhard, 0.001);
+    EXPECT_GE(renderer->display().rgba[0], 254) << radiance;
+  }
 }
 
 TEST_F(ToneMapping, ABlackFrameKeepsTheExposure) {
