@@ -80,7 +80,7 @@ Status compose(const json& transforms, TrackedCamera& camera) {
     camera.stage_from_camera *= rotation;
     linear *= rotation * own_scale->asDiagonal();
   }
-  if (!(camera.position_m.cwiseAbs().maxCoeff() <= kFarthestTracked_m))
+  if (!camera.position_m.allFinite() || camera.position_m.cwiseAbs().maxCoeff() > kFarthestTracked_m)
     return bad("transforms: the camera is more than 1e6 m away");
   return {};
 }

@@ -10,8 +10,6 @@
 #include <optional>
 
 #include "interface/atomic_file.h"
-#include "interface/light_set_io.h"
-#include "interface/printable.h"
 #include "render/egl_context.h"
 #include "render/gltf_scene.h"
 #include "render/kms_screen.h"
@@ -20,7 +18,11 @@
 #include "render/plate.h"
 #include "render/probe_balls.h"
 #include "render/renderer.h"
+#include "render/say.h"
 #include "render/scene_motion.h"
+#include "render/screenshot.h"
+#include "render/session_inputs.h"
+#include "render/session_text.h"
 #include "render/statistics.h"
 #include "render/window.h"
 
@@ -28,11 +30,6 @@ namespace lightwell::render {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr int kLiveLights = 72;  // what two cores without a GPU draw several times a second
-
-void say(const std::string& line) {
-  std::fprintf(stderr, "lightwell-render: %s\n", printable(line).c_str());
-}
 
 double cpu_ms() {
   timespec t{};
@@ -42,58 +39,6 @@ double cpu_ms() {
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-struct ChosenCamera {
-  SceneCamera camera;
-  std::optional<std::size_t> of_scene;
-};
-
-Result<ChosenCamera> choose_camera(const Scene& scene, const Options& options) {
-  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-    const SceneCamera& camera = scene.cameras[i];
-    if (options.camera.empty() || camera.name == options.camera || camera.node_name == options.camera)
-      return ChosenCamera{camera, i};
-  }
-  if (!options.camera.empty()) {
-    std::string names;
-    for (const SceneCamera& camera : scene.cameras)
-      names += (names.empty() ? "'" : ", '") + camera.name + "'";
-    return Error{ErrorKind::usage, "--camera " + options.camera + ": not in " + options.scene.string() +
-                                       (names.empty() ? ", which has none" : ", which has " + names)};
-  }
-  say(options.scene.string() + " has no perspective camera; one that sees all of it is used");
-  return ChosenCamera{fitted_camera(scene), std::nullopt};
-}
-
-Result<std::unique_ptr<LightSource>> open_lights(const Options& options) {
-  if (options.live) {
-    LiveOptions live;
-    live.dds = {options.domain, options.interface};
-    live.max_lights = options.shadow_maps > 0 ? options.shadow_maps : kLiveLights;
-    live.with_environment = options.background_environment || options.probe;
-    return live_lights(live);
-  }
-  if (!options.environment.empty())
-    return environment_lights({options.environment, options.lights, options.method, options.coverage,
-                               options.spin_deg, options.shadow_maps});
-  auto set = read_light_set(options.light_set);
-  if (!set) return set.error();
-  return fixed_lights(*set, options.shadow_maps);
-}
-
-// Everything that cannot work is found before the first frame is rendered.
-Status check_outputs(const Options& options) {
-  std::vector<std::filesystem::path> files;
-  for (const FrameName& name : options.outputs) files.push_back(name.file(0));
-  if (!options.stats.empty()) files.push_back(options.stats);
-  for (const auto& file : files) {
-    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-    std::error_code ignored;
-    if (!std::filesystem::is_directory(folder, ignored))
-      return Error{ErrorKind::failed, file.string() + ": folder " + folder.string() + " does not exist"};
-  }
-  return {};
 }
 
 bool has_display() {
@@ -181,27 +126,26 @@ class Session {
       const bool changed = window.take_changed() || tracked;
       const auto [width, height] = window.size();
       const bool moves = scene_.rig.moves();
-      if (width > 0 && height > 0 && (*fresh || changed || moves || options_.frames.has_value())) {
+      const bool draw =
+          width > 0 && height > 0 && (*fresh || changed || moves || options_.frames.has_value());
+      if (draw) {
         if (Status s = renderer_->resize(width, height); !s) return s;
         if (Status s = move_scene(options_.live || !options_.frames); !s) return s;
         if (moves || tracked) window.follow(camera_.camera);
         if (Status s = apply(window); !s) return s;
         if (Status s = render(window.camera()); !s) return s;
-        renderer_->present();
-        overlay->draw(overlay_content(window), width, height);
-        window.show();
         ++shown;
-        if (window.take_screenshot())
-          if (Status s = save_screenshot(); !s) say(s.error().message);
-        window.poll();
-      } else {
-        window.poll(0.01);
       }
+      const bool over_it = window.take_overlay_changed() && frame_ > 0 && window.size() == picture_size();
+      if (draw || over_it) show(window, *overlay);
+      if (frame_ > 0 && window.take_screenshot())
+        if (Status s = save_screenshot(); !s) say(s.error().message);
+      window.poll(draw ? 0 : 0.01);
       if (const double elapsed_s = seconds_since(rate_time); elapsed_s >= 0.5) {
         fps_ = shown / elapsed_s;
         rate_time = Clock::now();
         shown = 0;
-        window.set_title(title());
+        window.set_title(title_text(numbers()));
       }
     }
     return finish();
@@ -314,6 +258,15 @@ class Session {
     return {};
   }
 
+  [[nodiscard]] std::pair<int, int> picture_size() const { return {renderer_->width(), renderer_->height()}; }
+
+  // The picture that is there, and the overlay.
+  void show(Window& window, Overlay& overlay) const {
+    renderer_->present();
+    overlay.draw(overlay_content(window), renderer_->width(), renderer_->height());
+    window.show();
+  }
+
   // What keys of the window switched.
   Status apply(Window& window) {
     show_probe_ = options_.probe != window.switches().probe;
@@ -327,7 +280,7 @@ class Session {
   [[nodiscard]] Overlay::Content overlay_content(const Window& window) const {
     Overlay::Content content;
     const WindowSwitches& on = window.switches();
-    if (on.numbers) content.numbers = numbers();
+    if (on.numbers) content.numbers = overlay_text(numbers());
     if (on.help) content.help = Window::help_lines();
     if (!on.dome) return content;
     Sphere dome = renderer_->scene_bounds();
@@ -340,53 +293,26 @@ class Session {
     return content;
   }
 
-  // Into the folder that the program was started in, under the first number that is free.
-  Status save_screenshot() {
-    for (int number = 1; number < 10000; ++number) {
-      char name[32];
-      std::snprintf(name, sizeof name, "lightwell-%04d", number);
-      const std::filesystem::path png = std::string(name) + ".png";
-      const std::filesystem::path exr = std::string(name) + ".exr";
-      std::error_code ignored;
-      if (std::filesystem::exists(png, ignored) || std::filesystem::exists(exr, ignored)) continue;
-      if (Status s = write_png(png, renderer_->display()); !s) return s;
-      if (Status s = write_exr(exr, renderer_->radiance()); !s) return s;
-      say("wrote " + png.string() + " and " + exr.string());
-      return {};
-    }
-    return Error{ErrorKind::failed, "no screenshot: lightwell-0001.png to -9999.png are all there"};
+  Status save_screenshot() const {
+    const auto names = write_screenshot(".", renderer_->display(), renderer_->radiance());
+    if (!names) return names.error();
+    say("wrote " + *names);
+    return {};
   }
 
-  template <class... Values>
-  static std::string text(const char* format, Values... values) {
-    char line[160];
-    std::snprintf(line, sizeof line, format, values...);
-    return line;
-  }
-
-  [[nodiscard]] std::string light_state() const {
-    if (const auto age = source_.age())
-      return text("light %.1f s old", std::chrono::duration<double>(*age).count());
-    return source_.ready() ? "" : "waiting for light";
-  }
-
-  [[nodiscard]] std::string title() const {
-    const std::string state = light_state();
-    return text("Lightwell – %.1f fps – %zu lights", fps_, source_.lights().lights.size()) +
-           (state.empty() ? "" : " – " + state);
-  }
-
-  [[nodiscard]] std::vector<std::string> numbers() const {
-    std::vector<std::string> lines = {text("%.1f fps, %.1f ms a frame", fps_, last_ms_),
-                                      text("%zu lights, %zu shadow maps of %d", statistics_.lights,
-                                           statistics_.shadow_maps, options_.shadow_size)};
-    if (const std::string state = light_state(); !state.empty()) lines.push_back(state);
-    if (statistics_.predicted_error > 0)
-      lines.push_back(
-          text("predicted error of shadows %.2g", static_cast<double>(statistics_.predicted_error)));
-    lines.push_back(text("EV %.1f%s", renderer_->exposure_ev100(), look_.exposure_ev100 ? " by hand" : ""));
-    lines.emplace_back("h: keys");
-    return lines;
+  [[nodiscard]] ViewNumbers numbers() const {
+    ViewNumbers n;
+    n.fps = fps_;
+    n.frame_ms = last_ms_;
+    n.lights = source_.lights().lights.size();
+    n.shadow_maps = statistics_.shadow_maps;
+    n.shadow_size = options_.shadow_size;
+    n.light_arrived = source_.ready();
+    n.light_age = source_.age();
+    n.predicted_error = statistics_.predicted_error;
+    n.ev100 = renderer_->exposure_ev100();
+    n.ev_by_hand = look_.exposure_ev100.has_value();
+    return n;
   }
 
   const Options& options_;

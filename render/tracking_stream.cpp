@@ -9,20 +9,15 @@
 
 #include <array>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <memory>
 #include <utility>
 
-#include "interface/printable.h"
 #include "render/freed_packet.h"
+#include "render/say.h"
 
 namespace lightwell::render {
 namespace {
-
-void say(const std::string& line) {
-  std::fprintf(stderr, "lightwell-render: %s\n", printable(line).c_str());
-}
 
 Error failure(const HostPort& address, const std::string& what) {
   return {ErrorKind::failed,

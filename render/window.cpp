@@ -31,101 +31,96 @@ Window::Window(GLFWwindow* window, Orbit orbit) : window_(window), orbit_(std::m
   });
   glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) { owner(w)->drag(x, y); });
   glfwSetScrollCallback(window, [](GLFWwindow* w, double, double dy) {
-    owner(w)->orbit_.zoom(static_cast<float>(std::pow(0.9, dy)));
-    owner(w)->changed_ = owner(w)->taken_ = true;
+    owner(w)->zoom(static_cast<float>(std::pow(0.9, dy)));
   });
   glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { owner(w)->changed_ = true; });
   glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { owner(w)->changed_ = true; });
 }
 
+// Without a name: another key for the one before.
+struct Window::Key {
+  int key;
+  const char* name;
+  const char* does;
+  void (*act)(Window&);
+};
+
+std::span<const Window::Key> Window::keys() {
+  using W = Window;
+  constexpr float kNearer = 0.9f;
+  constexpr double kThirdOfAStop = 1.0 / 3;
+  static const Key all[] = {
+      {GLFW_KEY_LEFT, "arrows", "turn the camera", [](W& w) { w.turn(-1, 0); }},
+      {GLFW_KEY_RIGHT, nullptr, nullptr, [](W& w) { w.turn(1, 0); }},
+      {GLFW_KEY_UP, nullptr, nullptr, [](W& w) { w.turn(0, 1); }},
+      {GLFW_KEY_DOWN, nullptr, nullptr, [](W& w) { w.turn(0, -1); }},
+      {GLFW_KEY_EQUAL, "+ -", "nearer, farther", [](W& w) { w.zoom(kNearer); }},  // + without Shift
+      {GLFW_KEY_KP_ADD, nullptr, nullptr, [](W& w) { w.zoom(kNearer); }},
+      {GLFW_KEY_MINUS, nullptr, nullptr, [](W& w) { w.zoom(1 / kNearer); }},
+      {GLFW_KEY_KP_SUBTRACT, nullptr, nullptr, [](W& w) { w.zoom(1 / kNearer); }},
+      {GLFW_KEY_HOME, "Home", "back to the scene's or the tracked camera", [](W& w) { w.go_home(); }},
+      {GLFW_KEY_H, "h", "this help", [](W& w) { w.switch_overlay(&WindowSwitches::help); }},
+      {GLFW_KEY_N, "n", "numbers", [](W& w) { w.switch_overlay(&WindowSwitches::numbers); }},
+      {GLFW_KEY_D, "d", "where lights are, on a dome", [](W& w) { w.switch_overlay(&WindowSwitches::dome); }},
+      {GLFW_KEY_S, "s", "shadows", [](W& w) { w.switch_picture(&WindowSwitches::shadows); }},
+      {GLFW_KEY_P, "p", "grey and mirror ball", [](W& w) { w.switch_picture(&WindowSwitches::probe); }},
+      {GLFW_KEY_RIGHT_BRACKET, "] [", "brighter, darker", [](W& w) { w.expose(kThirdOfAStop); }},
+      {GLFW_KEY_LEFT_BRACKET, nullptr, nullptr, [](W& w) { w.expose(-kThirdOfAStop); }},
+      {GLFW_KEY_C, "c", "screenshot, PNG and EXR", [](W& w) { w.screenshot_ = true; }},
+      {GLFW_KEY_F, "f", "full screen", [](W& w) { w.toggle_full_screen(); }},
+      {GLFW_KEY_Q, "Esc, q", "close", [](W& w) { glfwSetWindowShouldClose(w.window_, GLFW_TRUE); }},
+      {GLFW_KEY_ESCAPE, nullptr, nullptr, [](W& w) { glfwSetWindowShouldClose(w.window_, GLFW_TRUE); }}};
+  return all;
+}
+
 std::vector<std::string> Window::help_lines() {
-  return {"drag          turn the camera",
-          "right drag    move it",
-          "wheel, + -    nearer, farther",
-          "arrows        turn",
-          "Home          back to the scene's or the tracked camera",
-          "h             this help",
-          "n             numbers",
-          "d             where the lights are, on a dome",
-          "s             shadows",
-          "p             grey and mirror ball",
-          "[ ]           exposure, a third of a stop",
-          "c             screenshot, PNG and EXR",
-          "f             full screen",
-          "Esc, q        close"};
+  std::vector<std::string> lines = {"drag         turn the camera", "right drag   move it",
+                                    "wheel        nearer, farther"};
+  constexpr std::size_t kColumn = 13;
+  for (const Key& key : keys()) {
+    if (key.name == nullptr) continue;
+    std::string name = key.name;
+    name.resize(kColumn, ' ');
+    lines.push_back(name + key.does);
+  }
+  return lines;
 }
 
 void Window::press(int key) {
+  for (const Key& known : keys())
+    if (known.key == key) known.act(*this);
+}
+
+void Window::turn(float right, float up) {
   constexpr float kStep_rad = 0.05f;
-  constexpr double kThirdOfAStop = 1.0 / 3;
-  const auto turn = [&](float right, float up) {
-    orbit_.turn(right * kStep_rad, up * kStep_rad);
-    taken_ = true;
-  };
-  const auto zoom = [&](float factor) {
-    orbit_.zoom(factor);
-    taken_ = true;
-  };
+  orbit_.turn(right * kStep_rad, up * kStep_rad);
+  changed_ = taken_ = true;
+}
+
+void Window::zoom(float factor) {
+  orbit_.zoom(factor);
+  changed_ = taken_ = true;
+}
+
+void Window::expose(double stops) {
+  exposure_steps_ += stops;
   changed_ = true;
-  switch (key) {
-    case GLFW_KEY_ESCAPE:
-    case GLFW_KEY_Q:
-      glfwSetWindowShouldClose(window_, GLFW_TRUE);
-      break;
-    case GLFW_KEY_LEFT:
-      turn(-1, 0);
-      break;
-    case GLFW_KEY_RIGHT:
-      turn(1, 0);
-      break;
-    case GLFW_KEY_UP:
-      turn(0, 1);
-      break;
-    case GLFW_KEY_DOWN:
-      turn(0, -1);
-      break;
-    case GLFW_KEY_EQUAL:  // + without Shift
-    case GLFW_KEY_KP_ADD:
-      zoom(0.9f);
-      break;
-    case GLFW_KEY_MINUS:
-    case GLFW_KEY_KP_SUBTRACT:
-      zoom(1 / 0.9f);
-      break;
-    case GLFW_KEY_HOME:
-      orbit_.start_at(followed_);
-      taken_ = false;
-      break;
-    case GLFW_KEY_H:
-      switches_.help = !switches_.help;
-      break;
-    case GLFW_KEY_N:
-      switches_.numbers = !switches_.numbers;
-      break;
-    case GLFW_KEY_D:
-      switches_.dome = !switches_.dome;
-      break;
-    case GLFW_KEY_S:
-      switches_.shadows = !switches_.shadows;
-      break;
-    case GLFW_KEY_P:
-      switches_.probe = !switches_.probe;
-      break;
-    case GLFW_KEY_LEFT_BRACKET:
-      exposure_steps_ -= kThirdOfAStop;
-      break;
-    case GLFW_KEY_RIGHT_BRACKET:
-      exposure_steps_ += kThirdOfAStop;
-      break;
-    case GLFW_KEY_C:
-      screenshot_ = true;
-      break;
-    case GLFW_KEY_F:
-      toggle_full_screen();
-      break;
-    default:
-      break;
-  }
+}
+
+void Window::switch_picture(bool WindowSwitches::*what) {
+  switches_.*what = !(switches_.*what);
+  changed_ = true;
+}
+
+void Window::switch_overlay(bool WindowSwitches::*what) {
+  switches_.*what = !(switches_.*what);
+  overlay_changed_ = true;
+}
+
+void Window::go_home() {
+  orbit_.start_at(followed_);
+  taken_ = false;
+  changed_ = true;
 }
 
 void Window::drag(double x, double y) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,6 +42,8 @@ class Window {
   [[nodiscard]] std::pair<int, int> size() const;
   // True once after the camera moved or the window changed size or was uncovered.
   [[nodiscard]] bool take_changed();
+  // True once after a key for what lies over the picture alone.
+  [[nodiscard]] bool take_overlay_changed() { return std::exchange(overlay_changed_, false); }
   [[nodiscard]] SceneCamera camera() const;
   // The camera stands there, until a user moves it.
   void follow(const SceneCamera& camera);
@@ -48,7 +51,7 @@ class Window {
   [[nodiscard]] const WindowSwitches& switches() const { return switches_; }
   // True once after the key for it.
   [[nodiscard]] bool take_screenshot() { return std::exchange(screenshot_, false); }
-  // Exposure values that keys asked for since the last call.
+  // Stops brighter that keys asked for since the last call.
   [[nodiscard]] double take_exposure_steps() { return std::exchange(exposure_steps_, 0.0); }
   // What each key does, a line each.
   static std::vector<std::string> help_lines();
@@ -56,12 +59,22 @@ class Window {
 
  private:
   Window(GLFWwindow* window, Orbit orbit);
+  struct Key;
+  static std::span<const Key> keys();
   void press(int key);
+  void turn(float right, float up);
+  void zoom(float factor);
+  void expose(double stops);
+  // Of the picture, or of what lies over it alone.
+  void switch_picture(bool WindowSwitches::*what);
+  void switch_overlay(bool WindowSwitches::*what);
+  void go_home();
   void drag(double x, double y);
   void toggle_full_screen();
   GLFWwindow* window_ = nullptr;
   Orbit orbit_;
   bool changed_ = true;
+  bool overlay_changed_ = false;
   bool taken_ = false;  // a user moved the camera
   WindowSwitches switches_;
   bool screenshot_ = false;

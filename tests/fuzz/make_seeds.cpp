@@ -169,6 +169,18 @@ void takes(const std::filesystem::path& folder) {
     }
 }
 
+void tracking(const std::filesystem::path& folder) {
+  std::string freed = std::string(1, '\0') + "\xD1\x01" + std::string(26, '\x02');
+  freed += '\x3B';
+  write(folder / "freed", freed);
+  write(
+      folder / "opentrackio.json",
+      std::string(1, '\x02') +
+          R"({"static":{"camera":{"activeSensorPhysicalDimensions":{"width":36.0,"height":24.0}}},)"
+          R"("lens":{"pinholeFocalLength":24.0},"transforms":[{"id":"Camera","translation":{"x":0,"y":2,"z":1.5},)"
+          R"("rotation":{"pan":0,"tilt":45,"roll":0},"scale":{"x":1,"y":1,"z":1}}]})");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -184,5 +196,6 @@ int main(int argc, char** argv) {
   imports(folder);
   radiance(folder / "radiance_hdr");
   takes(folder / "recording");
+  tracking(folder / "tracking");
   return 0;
 }

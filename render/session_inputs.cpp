@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/session_inputs.h"
+
+#include "interface/light_set_io.h"
+#include "render/camera.h"
+#include "render/say.h"
+
+namespace lightwell::render {
+namespace {
+
+constexpr int kLiveLights = 72;  // what two cores without a GPU draw several times a second
+
+}  // namespace
+
+Result<ChosenCamera> choose_camera(const Scene& scene, const Options& options) {
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+    const SceneCamera& camera = scene.cameras[i];
+    if (options.camera.empty() || camera.name == options.camera || camera.node_name == options.camera)
+      return ChosenCamera{camera, i};
+  }
+  if (!options.camera.empty()) {
+    std::string names;
+    for (const SceneCamera& camera : scene.cameras)
+      names += (names.empty() ? "'" : ", '") + camera.name + "'";
+    return Error{ErrorKind::usage, "--camera " + options.camera + ": not in " + options.scene.string() +
+                                       (names.empty() ? ", which has none" : ", which has " + names)};
+  }
+  say(options.scene.string() + " has no perspective camera; one that sees all of it is used");
+  return ChosenCamera{fitted_camera(scene), std::nullopt};
+}
+
+Result<std::unique_ptr<LightSource>> open_lights(const Options& options) {
+  if (options.live) {
+    LiveOptions live;
+    live.dds = {options.domain, options.interface};
+    live.max_lights = options.shadow_maps > 0 ? options.shadow_maps : kLiveLights;
+    live.with_environment = options.background_environment || options.probe;
+    return live_lights(live);
+  }
+  if (!options.environment.empty())
+    return environment_lights({options.environment, options.lights, options.method, options.coverage,
+                               options.spin_deg, options.shadow_maps});
+  auto set = read_light_set(options.light_set);
+  if (!set) return set.error();
+  return fixed_lights(*set, options.shadow_maps);
+}
+
+Status check_outputs(const Options& options) {
+  std::vector<std::filesystem::path> files;
+  for (const FrameName& name : options.outputs) files.push_back(name.file(0));
+  if (!options.stats.empty()) files.push_back(options.stats);
+  for (const auto& file : files) {
+    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(folder, ignored))
+      return Error{ErrorKind::failed, file.string() + ": folder " + folder.string() + " does not exist"};
+  }
+  return {};
+}
+
+}  // namespace lightwell::render

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "render/light_source.h"
+#include "render/options.h"
+#include "render/scene.h"
+
+namespace lightwell::render {
+
+struct ChosenCamera {
+  SceneCamera camera;
+  std::optional<std::size_t> of_scene;  // which of the scene's, whose motion it follows
+};
+
+// The camera of the options' name, else the scene's first, else one that sees all of it, which is said.
+// usage: no camera has the name
+Result<ChosenCamera> choose_camera(const Scene& scene, const Options& options);
+
+// Light from where the options say.
+Result<std::unique_ptr<LightSource>> open_lights(const Options& options);
+
+// Everything that cannot work is found before the first frame is rendered. failed: a folder is missing.
+Status check_outputs(const Options& options);
+
+}  // namespace lightwell::render

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/session_text.h"
+
+#include <cstdio>
+
+namespace lightwell::render {
+namespace {
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  char line[160];
+  std::snprintf(line, sizeof line, format, values...);
+  return line;
+}
+
+// Empty: light that does not age.
+std::string light_text(const ViewNumbers& n) {
+  if (!n.light_arrived) return "waiting for light";
+  if (!n.light_age) return "";
+  return text("light %.1f s old", std::chrono::duration<double>(*n.light_age).count());
+}
+
+}  // namespace
+
+std::string title_text(const ViewNumbers& n) {
+  const std::string light = light_text(n);
+  return text("Lightwell – %.1f fps – %zu lights", n.fps, n.lights) + (light.empty() ? "" : " – " + light);
+}
+
+std::vector<std::string> overlay_text(const ViewNumbers& n) {
+  std::vector<std::string> lines = {
+      text("%.1f fps, %.1f ms a frame", n.fps, n.frame_ms),
+      text("%zu lights, %zu shadow maps of %d", n.lights, n.shadow_maps, n.shadow_size)};
+  if (const std::string light = light_text(n); !light.empty()) lines.push_back(light);
+  if (n.predicted_error > 0) lines.push_back(text("predicted error of shadows %.2g", n.predicted_error));
+  lines.push_back(text("EV %.1f%s", n.ev100, n.ev_by_hand ? " by hand" : ""));
+  lines.emplace_back("h: keys");
+  return lines;
+}
+
+}  // namespace lightwell::render
