@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "render/gbuffer.h"
 #include "render/gl_objects.h"
-#include "render/light_rows.h"
 #include "render/scene.h"
 #include "render/shadow_atlas.h"
 
@@ -19,8 +17,8 @@ class CutoutCasters {
  public:
   static Result<CutoutCasters> create(const Scene& scene, const Casters& casters, const GBuffer& gbuffer);
   [[nodiscard]] bool empty() const { return draws_.empty(); }
-  // Adds to the maps of rows, the first of buffer, that the atlas has just drawn.
-  void draw(std::span<const LightRow> rows, GLuint buffer, const ShadowAtlas& atlas) const;
+  // Adds to the maps that the atlas has just drawn.
+  void draw(const ShadowAtlas& atlas) const;
 
  private:
   struct Draw {

@@ -10,29 +10,34 @@
 
 namespace lightwell::render {
 
-// A light as the shaders see it (std140). The rows u, v, w map a world position to its place in the light's
-// own map: dot(row, (position, 1)) is in [0, 1] for every caster but the supports, w grows away from the
-// light.
+// A light as the shaders see it (std140).
 struct LightRow {
-  float u[4];
-  float v[4];
-  float w[4];
-  float illuminance[3];
-  // Metres a unit of w stands for, the diameter of the map's sphere; negative where no support is in the
-  // light's way.
+  float to_light[3];  // unit
+  // Metres that a map's depth covers, the diameter of the sphere it fits; negative where no support is in the light's
+  // way, and the sphere is the objects'.
   float extent_m;
+  float illuminance[3];
+  float texel;    // 1 / side of the light's map, texels
+  float tile[3];  // the map in the atlas: corner and side, of the atlas's side
+  float unused;
 };
 
 // The diameter of a map's sphere with the depth range's padding, so that no caster reaches the cleared depth
 // of 1.
 inline constexpr float kDepthPadding = 1.01f;
 
-// 256 of them fill the 16 KB that every OpenGL ES 3.1 guarantees for a uniform block.
+// 12 KB of them; every OpenGL ES 3.1 guarantees 16 for a uniform block.
 inline constexpr int kMaxLightsPerBlock = 256;
 
-// One row a light that has power; those that no support is in the way of come first.
-// map_size: texels a side; a texel's border around the casters stays empty.
-std::vector<LightRow> make_light_rows(std::span<const DirectionalLight> lights, const Casters& casters,
-                                      int map_size);
+// One row a light that has power, in the lights' order, without a map yet.
+std::vector<LightRow> make_light_rows(std::span<const DirectionalLight> lights, const Casters& casters);
+
+// Affine maps of world positions for a light's map: dot(row, (position, 1)) is in [0, 1] for every caster but the
+// supports, with a border of two texels in u and v; w grows away from the light.
+struct MapRows {
+  float u[4], v[4], w[4];
+};
+// side: of the map, texels
+MapRows map_rows(const LightRow& light, const Casters& casters, int side);
 
 }  // namespace lightwell::render

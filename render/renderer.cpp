@@ -42,7 +42,7 @@ std::string emission_fact(const Scene& scene) {
   return std::string("#define HAS_EMISSION ") + (emits ? "1" : "0") + "\n";
 }
 
-// across = 0.5 / radius = kDepthPadding / extent (make_light_rows).
+// across = 0.5 / radius = kDepthPadding / extent (map_rows).
 std::string map_facts(bool nothing_casts, bool simplified) {
   constexpr float kDepthTexels = 0.1f;  // 16 bits of depth, and curvature
   return std::string("#define HAS_SHADOWS ") + (nothing_casts ? "0" : "1") + "\n#define MAP_REACH " +
@@ -75,7 +75,10 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   r.casters_ = find_casters(scene, options.simplify_casters ? options.shadow_size : 0);
   auto gbuffer = GBuffer::create(scene, r.casters_);
   if (!gbuffer) return gbuffer.error();
-  auto atlas = ShadowAtlas::create(r.casters_, options.shadow_size);
+  ShadowAtlasOptions atlas_options{options.shadow_size, options.texels_by_power};
+  if (options.texels_by_power)
+    r.fine_casters_ = find_casters(scene, options.simplify_casters ? kLargestMap * options.shadow_size : 0);
+  auto atlas = ShadowAtlas::create(r.casters_, r.fine_casters_, atlas_options);
   if (!atlas) return atlas.error();
   auto cutouts = CutoutCasters::create(scene, r.casters_, *gbuffer);
   if (!cutouts) return cutouts.error();
@@ -109,7 +112,8 @@ void Renderer::move(const Scene& scene, std::span<const std::size_t> moved) {
   casters_.move(scene, moved);
   if (moved.empty()) return;
   gbuffer_.move(scene, moved);
-  atlas_.move(casters_);
+  if (options_.texels_by_power) fine_casters_.move(scene, moved);
+  atlas_.move(casters_, fine_casters_);
 }
 
 Status Renderer::resize(int width, int height) {
@@ -196,8 +200,9 @@ double Renderer::lap(double start, double& pass) const {
 
 Status Renderer::render(const LightSet& lights, const SceneCamera& camera, double environment_turn_rad) {
   times_ = {};
-  const std::vector<LightRow> rows = make_light_rows(lights.lights, casters_, options_.shadow_size);
+  std::vector<LightRow> rows = make_light_rows(lights.lights, casters_);
   shadow_maps_ = nothing_casts_ ? 0 : rows.size();
+  shadow_maps_drawn_ = 0;
   const int samples = options_.samples;
   // A plate is seen through each sample, so that its sum over the lights must be known first.
   const int at_once = compositor_ ? 1 : samples;
@@ -213,7 +218,7 @@ Status Renderer::render(const LightSet& lights, const SceneCamera& camera, doubl
   return {};
 }
 
-Status Renderer::render_samples(std::span<const LightRow> all, const LightSet& lights,
+Status Renderer::render_samples(std::span<LightRow> all, const LightSet& lights,
                                 const SceneCamera& camera, int first_sample, int end_sample,
                                 double environment_turn_rad) {
   const int samples = end_sample - first_sample;
@@ -224,15 +229,14 @@ Status Renderer::render_samples(std::span<const LightRow> all, const LightSet& l
   // At least once, so that ambient light and background are drawn without any light.
   for (std::size_t first = 0; first == 0 || first < all.size(); first += capacity) {
     const auto block = all.subspan(first, std::min(capacity, all.size() - first));
+    if (!nothing_casts_ && !block.empty()) {
+      if (Status s = atlas_.draw(block, casters_); !s) return s;
+      cutouts_.draw(atlas_);
+      shadow_maps_drawn_ += atlas_.drawn();
+    }
     glBindBuffer(GL_UNIFORM_BUFFER, light_block_.id());
     glBufferSubData(GL_UNIFORM_BUFFER, 0, static_cast<GLsizeiptr>(block.size_bytes()), block.data());
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, light_block_.id());
-    // The maps of one block serve all samples.
-    const bool drawn = first_sample > 0 && all.size() <= capacity;
-    if (!nothing_casts_ && !block.empty() && !drawn) {
-      if (Status s = atlas_.draw(block, light_block_.id()); !s) return s;
-      cutouts_.draw(block, light_block_.id(), atlas_);
-    }
     time = lap(time, times_.shadow_ms);
     for (int sample = first_sample; sample < end_sample; ++sample) {
       const View view =
@@ -291,10 +295,8 @@ void Renderer::shade_surfaces(const gl::Program& program, Sums& sums, const View
   surfaces.set_texture("shadow_maps", 4, atlas_.texture());
   surfaces.set_texture("emission_map", 5, gbuffer_.emission());
   surfaces.set("light_count", light_count);
-  surfaces.set("tiles", static_cast<float>(atlas_.tiles()));
   surfaces.set("objects_centre", casters_.objects.centre.data());
   surfaces.set("scene_centre", casters_.scene.centre.data());
-  surfaces.set("map_size", static_cast<float>(atlas_.map_size()));
   surfaces.set("weight", weight);
   surfaces.set("coverage", first_block ? 1.0f : 0.0f);
   surfaces.set("start_sum", start_sum ? 1 : 0);

@@ -23,8 +23,10 @@ namespace lightwell::render {
 struct RendererOptions {
   int width = 320;
   int height = 240;
-  int samples = 1;               // a pixel: 1 at its centre, more spread over it, averaged
-  int shadow_size = 256;         // texels a side of a light's map
+  int samples = 1;        // a pixel: 1 at its centre, more spread over it, averaged
+  int shadow_size = 256;  // texels a side of a light's map
+  bool texels_by_power =
+      true;  // strong lights have maps of up to kLargestMap times the side, weak ones smaller ones
   bool simplify_casters = true;  // shadows of simpler meshes, a quarter of a map's texel off at most
   bool measure_passes = false;   // waits for each pass, to time it
 };
@@ -72,8 +74,10 @@ class Renderer {
   [[nodiscard]] DisplayPicture display() const { return tone_mapper_.read(); }
   // Waits until everything is drawn.
   static void finish() { glFinish(); }
-  // Maps drawn for the last frame: one a light that has power; 0 where nothing casts.
+  // Maps of the last frame: one a light that has power; 0 where nothing casts.
   [[nodiscard]] std::size_t shadow_maps() const { return shadow_maps_; }
+  // Of these, drawn for it: the others stood from frames before.
+  [[nodiscard]] std::size_t shadow_maps_drawn() const { return shadow_maps_drawn_; }
   [[nodiscard]] const PassTimes& pass_times() const { return times_; }
   [[nodiscard]] static std::string gl_renderer();
   // Largest side of a picture.
@@ -113,6 +117,7 @@ class Renderer {
   CutoutCasters cutouts_;
   ToneMapper tone_mapper_;
   Casters casters_;
+  Casters fine_casters_;  // for maps larger than shadow_size
   gl::Program surfaces_;
   gl::Program background_;
   gl::Program lay_over_;  // made when it is first needed
@@ -130,6 +135,7 @@ class Renderer {
   PassTimes times_;
   std::size_t shadow_maps_ = 0;
   bool nothing_casts_ = false;
+  std::size_t shadow_maps_drawn_ = 0;
 };
 
 }  // namespace lightwell::render

@@ -3,49 +3,80 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
-#include "render/casters.h"
-#include "render/gl_objects.h"
+#include "render/caster_buffers.h"
 #include "render/light_rows.h"
+#include "render/tile_allocator.h"
 
 namespace lightwell::render {
 
-// Shadow maps of many lights as tiles of one 16 bit depth texture.
+// Times map_size: the side of the strongest lights' maps.
+inline constexpr int kLargestMap = 4;
+
+struct ShadowAtlasOptions {
+  int map_size = 256;  // texels a side of a light's map, on average
+  bool texels_by_power =
+      true;  // strong lights have larger maps, weak ones smaller, of as many texels together
+};
+
+// Shadow maps of many lights as tiles of one 16 bit depth texture. A map is drawn anew when its light came to another
+// place by more than kMovedTexels, when a caster moved, or when its light is to have many more or fewer texels.
 class ShadowAtlas {
  public:
-  // map_size: texels a side of one map, at most side_limit().
-  static Result<ShadowAtlas> create(const Casters& casters, int map_size);
+  // Maps up to map_size show coarse meshes, larger ones (kLargestMap times map_size at the most) fine ones.
+  static Result<ShadowAtlas> create(const Casters& coarse, const Casters& fine,
+                                    const ShadowAtlasOptions& options);
 
   // Largest side of an atlas on this driver: 4096, which small boards have, or what the driver allows.
   static int side_limit();
   // Lights whose maps the atlas holds at once.
   [[nodiscard]] int capacity() const;
-  [[nodiscard]] int map_size() const { return map_size_; }
-  [[nodiscard]] int tiles() const { return tiles_; }  // a side
+  [[nodiscard]] int map_size() const { return options_.map_size; }
   [[nodiscard]] GLuint texture() const { return texture_.id(); }
-  [[nodiscard]] bool empty() const { return closed_count_ + open_count_ + support_count_ == 0; }
+  [[nodiscard]] bool empty() const { return coarse_.empty(); }
 
-  // Follows the parts that moved of the casters that it was made of.
-  void move(const Casters& casters);
+  // Follows casters that moved; all maps are drawn anew.
+  void move(const Casters& coarse, const Casters& fine);
+  // Gives each row, at most capacity(), its tile, and draws what is not there yet. casters: the coarse ones, for
+  // their bounds. A light that moved so little that its map stands takes the map's direction.
+  Status draw(std::span<LightRow> rows, const Casters& casters);
+  // Maps drawn by the last draw(), and their MapRows into the atlas's clip space: for what else is to stand in them.
+  [[nodiscard]] std::size_t drawn() const { return drawn_; }
+  [[nodiscard]] GLuint instances() const { return instances_.id(); }
   // Makes the whole atlas the place to draw to.
   void bind() const;
-  // Draws the maps of rows, at most capacity(), which are the first of buffer.
-  Status draw(std::span<const LightRow> rows, GLuint buffer);
 
  private:
-  Status resize(int tiles);
+  struct Tile {
+    LightRow row{};  // as it was drawn
+    int side = 0;    // units
+    TileAllocator::Corner at{0, 0};
+    bool stale = true;
+  };
 
-  int map_size_ = 256;
-  int tiles_ = 0;
-  GLsizei closed_count_ = 0;
-  GLsizei open_count_ = 0;
-  GLsizei support_count_ = 0;
+  [[nodiscard]] std::vector<int> sides_of(std::span<const LightRow> rows) const;  // units
+  void match(std::span<const LightRow> rows, std::vector<Tile>& tiles);
+  Status place(std::vector<Tile>& tiles);
+  Status resize(int side_units);
+  void draw_stale(const Casters& casters);
+  void clear(std::span<const Tile* const> tiles) const;
+  void upload(std::span<const Tile* const> tiles, const Casters& casters);
+  void draw_tiles(std::span<const Tile* const> tiles, std::size_t first, const CasterBuffers& buffers) const;
+
+  ShadowAtlasOptions options_;
+  int unit_ = 64;  // texels; tiles are unit · 2ᵏ
+  TileAllocator allocator_;
+  std::vector<Tile> tiles_;  // a row each
+  std::size_t drawn_ = 0;
+  CasterBuffers coarse_, fine_;
   gl::Program program_;
-  gl::VertexArray vertex_array_;
-  gl::Buffer positions_;
-  gl::Buffer indices_;
+  gl::Buffer instances_;
   gl::Texture texture_;
   gl::Framebuffer framebuffer_;
 };
+
+// A light may come so far from where its map was drawn, at the edge of what casts, before it is drawn anew.
+inline constexpr float kMovedTexels = 0.25f;
 
 }  // namespace lightwell::render

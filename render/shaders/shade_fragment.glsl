@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Adds one block of lights to the pixels that show a surface (the depth test leaves the others out): one loop, one
 // shadow look-up a light. What a loop reads of a uniform, software drivers gather pixel by pixel: more than half of the
-// loop's work. So it reads seven numbers a light, derives the map's axes, and takes everything else from before it.
-struct Light { vec4 u, v, w, illuminance; };
+// loop's work. So it derives the map's axes, and takes everything else from before it.
+struct Light { vec4 to_light_extent, illuminance_texel, tile; };  // LightRow
 layout(std140) uniform Lights { Light lights[256]; };
 uniform int light_count;
-uniform float tiles;  // a side of the atlas
-uniform float map_size;
 uniform vec3 objects_centre, scene_centre;  // of the spheres that maps fit, without supports in the way and with
 uniform sampler2DShadow shadow_maps;
 uniform sampler2D position_material_map;
@@ -93,26 +91,26 @@ vec3 reflectance(Surface s, vec3 to_light, float cosine) {
 
 struct Maps {
   vec3 from_objects, from_scene;  // to the surface
-  float bias;                     // in texels; 0 where the surface does not stand in the maps
+  float bias;                     // 0 where the surface does not stand in the maps, else 1
   bool on_support;
-  float across, margin, tile;
 };
 
 // 1 lit, 0 in shadow, between them the hardware's 2×2 comparison. Outside its map everything is lit.
 // extent: LightRow's; the axes are make_light_rows's.
-float visibility(Maps maps, vec2 tile, vec3 normal, vec3 to_light, float extent, float cosine) {
+float visibility(Maps maps, vec3 tile, float texel, vec3 normal, vec3 to_light, float extent, float cosine) {
   float size = abs(extent);
+  float across = (1.0 - 4.0 * texel) / size;
   // A 2×2 comparison reaches √2 texels away, where a plane at angle θ to the light is nearer by √2·texel·tan θ. Moving
   // the point by √2·texel·sin θ along its normal clears exactly that; the rest
   // (CASTER_SLACK) is for depth's 16 bits, curvature, and casters simpler than what is seen.
-  float bias = maps.bias * size * (1.4142136 * sqrt(max(1.0 - cosine * cosine, 0.0)) + CASTER_SLACK);
+  float bias = maps.bias * texel / across * (1.4142136 * sqrt(max(1.0 - cosine * cosine, 0.0)) + CASTER_SLACK);
   vec3 p = (extent > 0.0 ? maps.from_scene : maps.from_objects) + normal * bias;
   vec3 u = abs(to_light.y) < 0.9 ? vec3(to_light.z, 0.0, -to_light.x) : vec3(0.0, -to_light.z, to_light.y);
   u *= inversesqrt(dot(u, u));
-  vec2 place = vec2(dot(u, p), dot(cross(to_light, u), p)) * (maps.across / size) + 0.5;
-  vec2 inside = clamp(place, maps.margin, 1.0 - maps.margin);
+  vec2 place = vec2(dot(u, p), dot(cross(to_light, u), p)) * (MAP_REACH * across) + 0.5;
+  vec2 inside = clamp(place, 0.5 * texel, 1.0 - 0.5 * texel);
   float depth = min(0.5 - dot(to_light, p) / size, 1.0);
-  float lit = textureLod(shadow_maps, vec3((tile + inside) * maps.tile, depth), 0.0);
+  float lit = textureLod(shadow_maps, vec3(tile.xy + inside * tile.z, depth), 0.0);
   // The side of a support that a light behind it sees: nothing of the scene is on that side.
   return inside == place && !(maps.on_support && extent > 0.0) ? lit : 1.0;
 }
@@ -126,28 +124,23 @@ void main() {
   Maps maps;
   maps.from_objects = position_material.xyz - objects_centre;
   maps.from_scene = position_material.xyz - scene_centre;
-  maps.bias = in_shadow_map == 1.0 ? 1.0 / (map_size - 4.0) : 0.0;
+  maps.bias = in_shadow_map == 1.0 ? 1.0 : 0.0;
   maps.on_support = in_shadow_map == 0.5;
-  maps.across = MAP_REACH * (1.0 - 4.0 / map_size);
-  maps.margin = 0.5 / map_size;
-  maps.tile = 1.0 / tiles;
   int count = light_count;
-  float last_tile = tiles - 1.0;
-  vec2 tile = vec2(0.0);
   // Ambient light reaches every surface: albedo times radiance. A lobe's albedo is taken at normal incidence.
   vec3 sum = (s.diffuse + s.specular) * ambient * coverage;
 #if HAS_EMISSION
   sum += texelFetch(emission_map, at, 0).rgb * coverage;
 #endif
   for (int i = 0; i < count; ++i) {
-    vec4 light = lights[i].illuminance;
-    vec3 to_light = lights[i].w.xyz * -abs(light.w);
+    vec4 to_light_extent = lights[i].to_light_extent;
+    vec4 light = lights[i].illuminance_texel;
+    vec3 to_light = to_light_extent.xyz;
     float cosine = max(dot(s.normal, to_light), 0.0);
 #if HAS_SHADOWS
-    light.rgb *= visibility(maps, tile, s.normal, to_light, light.w, cosine);
+    light.rgb *= visibility(maps, lights[i].tile.xyz, light.w, s.normal, to_light, to_light_extent.w, cosine);
 #endif
     sum += light.rgb * cosine * reflectance(s, to_light, cosine);
-    tile = tile.x == last_tile ? vec2(0.0, tile.y + 1.0) : vec2(tile.x + 1.0, tile.y);
   }
   radiance = vec4(sum, coverage) * weight;
   if (start_sum == 0) radiance += texelFetch(so_far, at, 0);

@@ -70,26 +70,27 @@ TEST(LightRows, MapEveryCasterIntoTheUnitCubeAndDepthAwayFromTheLight) {
   const Casters casters = find_casters(scene);
   for (const Vec3f& d : {Vec3f(0, 1, 0), Vec3f(0, -1, 0), Vec3f(1, 0.2f, -3)}) {
     const LightSet lights = light_set({{d, Rgb::Ones()}});
-    const auto rows = make_light_rows(lights.lights, casters, 64);
-    ASSERT_EQ(rows.size(), 1u);
+    const auto lit = make_light_rows(lights.lights, casters);
+    ASSERT_EQ(lit.size(), 1u);
+    const MapRows rows = map_rows(lit[0], casters, 64);
     const auto place = [&](const float(&row)[4], const Vec3f& p) {
       return row[0] * p.x() + row[1] * p.y() + row[2] * p.z() + row[3];
     };
     for (const Vec3f& p : casters.positions) {
-      for (const float s : {place(rows[0].u, p), place(rows[0].v, p)}) {
+      for (const float s : {place(rows.u, p), place(rows.v, p)}) {
         EXPECT_GE(s, 1.0f / 64);
         EXPECT_LE(s, 63.0f / 64);
       }
-      EXPECT_GE(place(rows[0].w, p), 0);
-      EXPECT_LT(place(rows[0].w, p), 1);
-      EXPECT_GT(place(rows[0].w, p), place(rows[0].w, p + d.normalized()));
+      EXPECT_GE(place(rows.w, p), 0);
+      EXPECT_LT(place(rows.w, p), 1);
+      EXPECT_GT(place(rows.w, p), place(rows.w, p + d.normalized()));
     }
   }
 }
 
 TEST(LightRows, LightsWithoutPowerTakeNoMap) {
   const LightSet lights = light_set({{Vec3f::UnitY(), Rgb::Zero()}, {Vec3f::UnitX(), Rgb(0, 0, 1)}});
-  EXPECT_EQ(make_light_rows(lights.lights, Casters{}, 64).size(), 1u);
+  EXPECT_EQ(make_light_rows(lights.lights, Casters{}).size(), 1u);
 }
 
 float distance_to_triangle(const Vec3f& p, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
