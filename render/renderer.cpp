@@ -42,11 +42,9 @@ std::string emission_fact(const Scene& scene) {
   return std::string("#define HAS_EMISSION ") + (emits ? "1" : "0") + "\n";
 }
 
-// across = 0.5 / radius = kDepthPadding / extent (map_rows).
 std::string map_facts(bool nothing_casts, bool simplified) {
   constexpr float kDepthTexels = 0.1f;  // 16 bits of depth, and curvature
-  return std::string("#define HAS_SHADOWS ") + (nothing_casts ? "0" : "1") + "\n#define MAP_REACH " +
-         std::to_string(kDepthPadding) + "\n#define CASTER_SLACK " +
+  return std::string("#define HAS_SHADOWS ") + (nothing_casts ? "0" : "1") + "\n#define CASTER_SLACK " +
          std::to_string(kDepthTexels + (simplified ? kSimplifiedTexels : 0)) + "\n";
 }
 
@@ -230,7 +228,7 @@ Status Renderer::render_samples(std::span<LightRow> all, const LightSet& lights,
   for (std::size_t first = 0; first == 0 || first < all.size(); first += capacity) {
     const auto block = all.subspan(first, std::min(capacity, all.size() - first));
     if (!nothing_casts_ && !block.empty()) {
-      if (Status s = atlas_.draw(block, casters_); !s) return s;
+      if (Status s = atlas_.draw(block, casters_, fine_casters_); !s) return s;
       cutouts_.draw(atlas_);
       shadow_maps_drawn_ += atlas_.drawn();
     }

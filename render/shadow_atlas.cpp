@@ -188,7 +188,7 @@ void ShadowAtlas::upload(std::span<const Tile* const> tiles, const Casters& cast
   const auto whole = static_cast<float>(allocator_.side());
   std::vector<MapRows> instances;
   for (const Tile* tile : tiles) {
-    MapRows rows = map_rows(tile->row, casters, tile->side * unit_);
+    MapRows rows = map_rows(tile->row, casters);
     const auto into_clip = [](float(&row)[4], float first, float size) {
       for (float& x : row) x *= 2 * size;
       row[3] += 2 * first - 1;
@@ -226,17 +226,20 @@ void ShadowAtlas::draw_tiles(std::span<const Tile* const> tiles, std::size_t fir
   glDisable(GL_SCISSOR_TEST);
 }
 
-void ShadowAtlas::draw_stale(const Casters& casters) {
+void ShadowAtlas::draw_stale(const Casters& coarse, const Casters& fine) {
   std::vector<const Tile*> stale;
-  for (const Tile& tile : tiles_)
-    if (tile.stale) stale.push_back(&tile);
+  for (Tile& tile : tiles_) {
+    if (!tile.stale) continue;
+    fit_map(tile.row, is_large(tile) ? fine : coarse, tile.side * unit_);
+    stale.push_back(&tile);
+  }
   drawn_ = stale.size();
   if (stale.empty()) return;
   const auto large = std::stable_partition(
       stale.begin(), stale.end(), [&](const Tile* tile) { return tile->side * unit_ <= options_.map_size; });
   const auto small_count = static_cast<std::size_t>(large - stale.begin());
   const std::span<const Tile* const> all(stale);
-  upload(all, casters);
+  upload(all, coarse);
   bind();
   clear(all);
   glUseProgram(program_.id());
@@ -244,7 +247,7 @@ void ShadowAtlas::draw_stale(const Casters& casters) {
   draw_tiles(all.subspan(small_count), small_count, fine_);
 }
 
-Status ShadowAtlas::draw(std::span<LightRow> rows, const Casters& casters) {
+Status ShadowAtlas::draw(std::span<LightRow> rows, const Casters& coarse, const Casters& fine) {
   std::vector<Tile> tiles;
   tiles.reserve(rows.size());
   match(rows, tiles);
@@ -253,16 +256,18 @@ Status ShadowAtlas::draw(std::span<LightRow> rows, const Casters& casters) {
     return s;
   }
   tiles_ = std::move(tiles);
-  draw_stale(casters);
+  draw_stale(coarse, fine);
   const float whole = static_cast<float>(allocator_.side());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Tile& tile = tiles_[i];
     tile.stale = false;
-    std::copy_n(tile.row.to_light, 3, rows[i].to_light);
-    rows[i].texel = 1 / static_cast<float>(tile.side * unit_);
-    rows[i].tile[0] = static_cast<float>(tile.at.x) / whole;
-    rows[i].tile[1] = static_cast<float>(tile.at.y) / whole;
-    rows[i].tile[2] = static_cast<float>(tile.side) / whole;
+    LightRow& row = rows[i];
+    const LightRow shown = row;
+    row = tile.row;
+    std::copy_n(shown.illuminance, 3, row.illuminance);
+    row.tile[0] = static_cast<float>(tile.at.x) / whole;
+    row.tile[1] = static_cast<float>(tile.at.y) / whole;
+    row.tile[2] = static_cast<float>(tile.side) / whole;
   }
   return {};
 }

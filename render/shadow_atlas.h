@@ -38,9 +38,9 @@ class ShadowAtlas {
 
   // Follows casters that moved; all maps are drawn anew.
   void move(const Casters& coarse, const Casters& fine);
-  // Gives each row, at most capacity(), its tile, and draws what is not there yet. casters: the coarse ones, for
-  // their bounds. A light that moved so little that its map stands takes the map's direction.
-  Status draw(std::span<LightRow> rows, const Casters& casters);
+  // Gives each row, at most capacity(), its map, and draws what is not there yet. The casters are those it was made of. A
+  // light that moved so little that its map stands takes the map's direction.
+  Status draw(std::span<LightRow> rows, const Casters& coarse, const Casters& fine);
   // Maps drawn by the last draw(), and their MapRows into the atlas's clip space: for what else is to stand in them.
   [[nodiscard]] std::size_t drawn() const { return drawn_; }
   [[nodiscard]] GLuint instances() const { return instances_.id(); }
@@ -59,7 +59,8 @@ class ShadowAtlas {
   void match(std::span<const LightRow> rows, std::vector<Tile>& tiles);
   Status place(std::vector<Tile>& tiles);
   Status resize(int side_units);
-  void draw_stale(const Casters& casters);
+  [[nodiscard]] bool is_large(const Tile& tile) const { return tile.side * unit_ > options_.map_size; }
+  void draw_stale(const Casters& coarse, const Casters& fine);
   void clear(std::span<const Tile* const> tiles) const;
   void upload(std::span<const Tile* const> tiles, const Casters& casters);
   void draw_tiles(std::span<const Tile* const> tiles, std::size_t first, const CasterBuffers& buffers) const;

@@ -3,7 +3,7 @@
 // Adds one block of lights to the pixels that show a surface (the depth test leaves the others out): one loop, one
 // shadow look-up a light. What a loop reads of a uniform, software drivers gather pixel by pixel: more than half of the
 // loop's work. So it derives the map's axes, and takes everything else from before it.
-struct Light { vec4 to_light_extent, illuminance_texel, tile; };  // LightRow
+struct Light { vec4 to_light_extent, illuminance_texel, tile_blur, fit; };  // LightRow
 layout(std140) uniform Lights { Light lights[256]; };
 uniform int light_count;
 uniform vec3 objects_centre, scene_centre;  // of the spheres that maps fit, without supports in the way and with
@@ -97,20 +97,19 @@ struct Maps {
 
 // 1 lit, 0 in shadow, between them the hardware's 2×2 comparison. Outside its map everything is lit.
 // extent: LightRow's; the axes are make_light_rows's.
-float visibility(Maps maps, vec3 tile, float texel, vec3 normal, vec3 to_light, float extent, float cosine) {
-  float size = abs(extent);
-  float across = (1.0 - 4.0 * texel) / size;
+float visibility(Maps maps, vec4 tile_blur, vec4 fit, float texel, vec3 normal, vec3 to_light, float extent,
+                 float cosine) {
   // A 2×2 comparison reaches √2 texels away, where a plane at angle θ to the light is nearer by √2·texel·tan θ. Moving
   // the point by √2·texel·sin θ along its normal clears exactly that; the rest
   // (CASTER_SLACK) is for depth's 16 bits, curvature, and casters simpler than what is seen.
-  float bias = maps.bias * texel / across * (1.4142136 * sqrt(max(1.0 - cosine * cosine, 0.0)) + CASTER_SLACK);
+  float bias = maps.bias * tile_blur.w * (1.4142136 * sqrt(max(1.0 - cosine * cosine, 0.0)) + CASTER_SLACK);
   vec3 p = (extent > 0.0 ? maps.from_scene : maps.from_objects) + normal * bias;
   vec3 u = abs(to_light.y) < 0.9 ? vec3(to_light.z, 0.0, -to_light.x) : vec3(0.0, -to_light.z, to_light.y);
   u *= inversesqrt(dot(u, u));
-  vec2 place = vec2(dot(u, p), dot(cross(to_light, u), p)) * (MAP_REACH * across) + 0.5;
+  vec2 place = vec2(dot(u, p), dot(cross(to_light, u), p)) * fit.xy + fit.zw;
   vec2 inside = clamp(place, 0.5 * texel, 1.0 - 0.5 * texel);
-  float depth = min(0.5 - dot(to_light, p) / size, 1.0);
-  float lit = textureLod(shadow_maps, vec3(tile.xy + inside * tile.z, depth), 0.0);
+  float depth = min(0.5 - dot(to_light, p) / abs(extent), 1.0);
+  float lit = textureLod(shadow_maps, vec3(tile_blur.xy + inside * tile_blur.z, depth), 0.0);
   // The side of a support that a light behind it sees: nothing of the scene is on that side.
   return inside == place && !(maps.on_support && extent > 0.0) ? lit : 1.0;
 }
@@ -138,7 +137,8 @@ void main() {
     vec3 to_light = to_light_extent.xyz;
     float cosine = max(dot(s.normal, to_light), 0.0);
 #if HAS_SHADOWS
-    light.rgb *= visibility(maps, lights[i].tile.xyz, light.w, s.normal, to_light, to_light_extent.w, cosine);
+    light.rgb *= visibility(maps, lights[i].tile_blur, lights[i].fit, light.w, s.normal, to_light, to_light_extent.w,
+                            cosine);
 #endif
     sum += light.rgb * cosine * reflectance(s, to_light, cosine);
   }

@@ -70,9 +70,14 @@ TEST(LightRows, MapEveryCasterIntoTheUnitCubeAndDepthAwayFromTheLight) {
   const Casters casters = find_casters(scene);
   for (const Vec3f& d : {Vec3f(0, 1, 0), Vec3f(0, -1, 0), Vec3f(1, 0.2f, -3)}) {
     const LightSet lights = light_set({{d, Rgb::Ones()}});
-    const auto lit = make_light_rows(lights.lights, casters);
+    auto lit = make_light_rows(lights.lights, casters);
     ASSERT_EQ(lit.size(), 1u);
-    const MapRows rows = map_rows(lit[0], casters, 64);
+    fit_map(lit[0], casters, 64);
+    const MapRows rows = map_rows(lit[0], casters);
+    float widest = 0;  // the map is filled, but for its border
+    for (const Vec3f& p : casters.positions)
+      widest = std::max(widest, rows.u[0] * p.x() + rows.u[1] * p.y() + rows.u[2] * p.z() + rows.u[3]);
+    EXPECT_GT(widest, 61.0f / 64);
     const auto place = [&](const float(&row)[4], const Vec3f& p) {
       return row[0] * p.x() + row[1] * p.y() + row[2] * p.z() + row[3];
     };
