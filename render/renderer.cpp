@@ -43,9 +43,10 @@ std::string emission_fact(const Scene& scene) {
 }
 
 std::string map_facts(bool nothing_casts, bool simplified) {
-  constexpr float kDepthTexels = 0.1f;  // 16 bits of depth, and curvature
+  constexpr float kCurvatureTexels = 0.1f;
   return std::string("#define HAS_SHADOWS ") + (nothing_casts ? "0" : "1") + "\n#define CASTER_SLACK " +
-         std::to_string(kDepthTexels + (simplified ? kSimplifiedTexels : 0)) + "\n";
+         std::to_string(kCurvatureTexels + (simplified ? kSimplifiedTexels : 0)) +
+         "\n#define DEPTH_SLACK 0.00003\n#define LEAST_COSINE 0.05\n";
 }
 
 // Values for a program, which it makes current.
@@ -216,9 +217,8 @@ Status Renderer::render(const LightSet& lights, const SceneCamera& camera, doubl
   return {};
 }
 
-Status Renderer::render_samples(std::span<LightRow> all, const LightSet& lights,
-                                const SceneCamera& camera, int first_sample, int end_sample,
-                                double environment_turn_rad) {
+Status Renderer::render_samples(std::span<LightRow> all, const LightSet& lights, const SceneCamera& camera,
+                                int first_sample, int end_sample, double environment_turn_rad) {
   const int samples = end_sample - first_sample;
   const float weight = 1 / static_cast<float>(samples);
   const auto capacity = static_cast<std::size_t>(atlas_.capacity());
@@ -292,6 +292,7 @@ void Renderer::shade_surfaces(const gl::Program& program, Sums& sums, const View
   surfaces.set_texture("materials", 3, gbuffer_.materials());
   surfaces.set_texture("shadow_maps", 4, atlas_.texture());
   surfaces.set_texture("emission_map", 5, gbuffer_.emission());
+  surfaces.set("atlas_side", static_cast<float>(atlas_.side()));
   surfaces.set("light_count", light_count);
   surfaces.set("objects_centre", casters_.objects.centre.data());
   surfaces.set("scene_centre", casters_.scene.centre.data());

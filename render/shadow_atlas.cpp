@@ -69,10 +69,6 @@ int ShadowAtlas::capacity() const {
 
 Status ShadowAtlas::resize(int side_units) {
   texture_ = gl::make_texture(GL_DEPTH_COMPONENT16, side_units * unit_, side_units * unit_);
-  for (const GLenum filter : {GLenum{GL_TEXTURE_MIN_FILTER}, GLenum{GL_TEXTURE_MAG_FILTER}})
-    glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
   auto framebuffer = gl::make_framebuffer({}, texture_.id());
   if (!framebuffer) return framebuffer.error();
   framebuffer_ = std::move(framebuffer).value();

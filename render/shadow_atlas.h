@@ -34,6 +34,7 @@ class ShadowAtlas {
   [[nodiscard]] int capacity() const;
   [[nodiscard]] int map_size() const { return options_.map_size; }
   [[nodiscard]] GLuint texture() const { return texture_.id(); }
+  [[nodiscard]] int side() const { return allocator_.side() * unit_; }  // texels
   [[nodiscard]] bool empty() const { return coarse_.empty(); }
 
   // Follows casters that moved; all maps are drawn anew.

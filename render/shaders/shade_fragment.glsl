@@ -7,7 +7,8 @@ struct Light { vec4 to_light_extent, illuminance_texel, tile_blur, fit; };  // L
 layout(std140) uniform Lights { Light lights[256]; };
 uniform int light_count;
 uniform vec3 objects_centre, scene_centre;  // of the spheres that maps fit, without supports in the way and with
-uniform sampler2DShadow shadow_maps;
+uniform highp sampler2D shadow_maps;  // depths, as they are
+uniform float atlas_side;              // texels
 uniform sampler2D position_material_map;
 uniform usampler2D surface_map;
 uniform sampler2D materials;
@@ -95,21 +96,31 @@ struct Maps {
   bool on_support;
 };
 
-// 1 lit, 0 in shadow, between them the hardware's 2×2 comparison. Outside its map everything is lit.
-// extent: LightRow's; the axes are make_light_rows's.
+// 1 lit, 0 in shadow, between them what bilinear weights of the nearest four texels make of them. Outside its map
+// everything is lit. The axes are map_rows's.
 float visibility(Maps maps, vec4 tile_blur, vec4 fit, float texel, vec3 normal, vec3 to_light, float extent,
                  float cosine) {
-  // A 2×2 comparison reaches √2 texels away, where a plane at angle θ to the light is nearer by √2·texel·tan θ. Moving
-  // the point by √2·texel·sin θ along its normal clears exactly that; the rest
-  // (CASTER_SLACK) is for depth's 16 bits, curvature, and casters simpler than what is seen.
-  float bias = maps.bias * tile_blur.w * (1.4142136 * sqrt(max(1.0 - cosine * cosine, 0.0)) + CASTER_SLACK);
-  vec3 p = (extent > 0.0 ? maps.from_scene : maps.from_objects) + normal * bias;
+  float size = abs(extent);
+  // Each texel is compared with the depth that the surface's own plane has there, not with that of the point: so no
+  // slope needs a bias. The rest (CASTER_SLACK, in texels along the normal) is for curvature and casters simpler than
+  // what is seen.
+  vec3 p = (extent > 0.0 ? maps.from_scene : maps.from_objects) + normal * (maps.bias * tile_blur.w * CASTER_SLACK);
   vec3 u = abs(to_light.y) < 0.9 ? vec3(to_light.z, 0.0, -to_light.x) : vec3(0.0, -to_light.z, to_light.y);
   u *= inversesqrt(dot(u, u));
-  vec2 place = vec2(dot(u, p), dot(cross(to_light, u), p)) * fit.xy + fit.zw;
+  vec3 v = cross(to_light, u);
+  vec2 place = vec2(dot(u, p), dot(v, p)) * fit.xy + fit.zw;
   vec2 inside = clamp(place, 0.5 * texel, 1.0 - 0.5 * texel);
-  float depth = min(0.5 - dot(to_light, p) / abs(extent), 1.0);
-  float lit = textureLod(shadow_maps, vec3(tile_blur.xy + inside * tile_blur.z, depth), 0.0);
+  vec2 at = (tile_blur.xy + inside * tile_blur.z) * atlas_side - 0.5;
+  vec2 corner = floor(at);
+  vec2 part = at - corner;
+  vec4 depths = textureGather(shadow_maps, (corner + 1.0) / atlas_side);
+  float depth = 0.5 - dot(to_light, p) / size - DEPTH_SLACK;
+  vec2 slope = vec2(dot(u, normal), dot(v, normal)) * texel / (fit.xy * (size * max(cosine, LEAST_COSINE))) * maps.bias;
+  vec2 low = -part * slope, high = low + slope;
+  vec4 plane = depth + vec4(low.x, high.x, high.x, low.x) + vec4(high.y, high.y, low.y, low.y);
+  vec4 lit4 = step(min(plane, 1.0), depths);
+  vec2 row = mix(lit4.wx, lit4.zy, part.x);
+  float lit = mix(row.x, row.y, part.y);
   // The side of a support that a light behind it sees: nothing of the scene is on that side.
   return inside == place && !(maps.on_support && extent > 0.0) ? lit : 1.0;
 }
