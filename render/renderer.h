@@ -101,7 +101,7 @@ class Renderer {
   [[nodiscard]] Shown shown() const;
   Status resize(Sums& sums) const;
   Status make_unshadowed();
-  Status render_samples(std::span<const LightRow> rows, const LightSet& lights, const SceneCamera& camera,
+  Status render_samples(std::span<LightRow> rows, const LightSet& lights, const SceneCamera& camera,
                         int first_sample, int end_sample, double environment_turn_rad);
   // Adds the block of lights and, with the first of a sample, what does not depend on them.
   void shade(const View& view, int light_count, const LightSet& lights, bool first_block, bool start_sum,
