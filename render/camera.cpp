@@ -13,7 +13,7 @@ struct Box {
   Vec3f low = Vec3f::Constant(std::numeric_limits<float>::max());
   Vec3f high = Vec3f::Constant(std::numeric_limits<float>::lowest());
   [[nodiscard]] Vec3f centre() const { return (low + high) / 2; }
-  [[nodiscard]] float radius() const { return std::max((high - low).norm() / 2, 1e-6f); }
+  [[nodiscard]] float radius() const { return std::max((high - low).norm() / 2, 1e-12f); }
 };
 
 Box bounds(const Scene& scene) {
@@ -84,6 +84,8 @@ Orbit::Orbit(const SceneCamera& start, const Scene& scene) {
   const Vec3f eye = start.world_from_camera.col(3).head<3>();
   const Vec3f back = start.world_from_camera.col(2).head<3>();
   distance_ = std::max((eye - box.centre()).dot(back), box.radius() / 100);
+  // So far away that nothing of the scene is left to see.
+  farthest_ = 1e3f * std::max(distance_, box.radius());
   start_at(start);
 }
 
@@ -104,7 +106,7 @@ void Orbit::turn(float right_rad, float up_rad) {
 }
 
 void Orbit::zoom(float factor) {
-  distance_ = std::clamp(distance_ * factor, camera_.near_m, 1e6f);
+  distance_ = std::clamp(distance_ * factor, camera_.near_m, farthest_);
   update();
 }
 

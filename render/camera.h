@@ -41,6 +41,7 @@ class Orbit {
   SceneCamera camera_;
   Vec3f target_ = Vec3f::Zero();
   float distance_ = 1;
+  float farthest_ = 1;
   float azimuth_rad_ = 0;
   float elevation_rad_ = 0;
 };
