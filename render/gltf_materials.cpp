@@ -117,7 +117,9 @@ std::vector<TextureImage> read_textures(const tinygltf::Model& model) {
     const auto bytes = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 4;
     if (image.width <= 0 || image.height <= 0 || image.component != 4 || image.bits != 8 ||
         image.image.size() != bytes)
-      throw BadScene{"image " + std::to_string(source.source) + " is not a readable 8 bit picture"};
+      throw BadScene{"image " + std::to_string(source.source) +
+                     (image.uri.empty() ? std::string() : " ('" + image.uri + "')") +
+                     " is missing or no readable 8 bit picture"};
     TextureImage& texture = textures.emplace_back();
     texture.width = image.width;
     texture.height = image.height;
