@@ -30,6 +30,7 @@ namespace lightwell::render {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+constexpr std::size_t kManyTriangles = 1'000'000;
 
 double cpu_ms() {
   timespec t{};
@@ -342,11 +343,9 @@ Status run_session(const Options& chosen, const std::atomic<bool>& stop) {
   if (Status s = check_outputs(options); !s) return s;
   auto scene = read_gltf(options.scene, options.animation);
   if (!scene) return scene.error();
-  if (scene->dropped_triangles > 0)
-    say(options.scene.string() + ": " + std::to_string(scene->dropped_triangles) +
-        " triangles of no area left out");
-  for (const std::string& what : scene->left_out) say(options.scene.string() + ": " + what + " left out");
-  for (const std::string& remark : scene->remarks) say(options.scene.string() + ": " + remark);
+  if (scene->triangles() > kManyTriangles)
+    say(options.scene.string() + ": " + std::to_string(scene->triangles()) +
+        " triangles; simpler ones for their shadows are looked for, about ten seconds a million");
   auto camera = choose_camera(*scene, options);
   if (!camera) return camera.error();
   auto source = open_lights(options);
@@ -365,8 +364,6 @@ Status run_session(const Options& chosen, const std::atomic<bool>& stop) {
       say(options.plate + ": its white counts as 1 cd/m²; --plate-white says otherwise");
   }
 
-  if (options.probe && !options.light_set.empty())
-    say("--probe: a light set has no picture of its environment; without the mirror ball");
   std::optional<TrackingStream> tracking;
   if (options.tracking) {
     auto opened = TrackingStream::open(*options.tracking);
@@ -379,6 +376,8 @@ Status run_session(const Options& chosen, const std::atomic<bool>& stop) {
     Session session(options, stop, *scene, *camera, **source, plates ? &*plates : nullptr,
                     tracking ? &*tracking : nullptr);
     if (Status s = session.prepare(); !s) return s;
+    // Once all of it is known to work: a refusal is one line.
+    for (const std::string& remark : remarks_on(*scene, *camera, **source, options)) say(remark);
     if (screen != nullptr) return session.run_screen(*screen);
     return window != nullptr ? session.run_window(*window) : session.run_off_screen();
   };

@@ -2,12 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/session_inputs.h"
 
+#include <algorithm>
+
 #include "interface/light_set_io.h"
 #include "render/camera.h"
-#include "render/say.h"
 
 namespace lightwell::render {
 namespace {
+
+bool has_power(const DirectionalLight& light) {
+  return light.illuminance.maxCoeff() > 0;
+}
 
 constexpr int kLiveLights = 72;  // what two cores without a GPU draw several times a second
 
@@ -26,8 +31,28 @@ Result<ChosenCamera> choose_camera(const Scene& scene, const Options& options) {
     return Error{ErrorKind::usage, "--camera " + options.camera + ": not in " + options.scene.string() +
                                        (names.empty() ? ", which has none" : ", which has " + names)};
   }
-  say(options.scene.string() + " has no perspective camera; one that sees all of it is used");
   return ChosenCamera{fitted_camera(scene), std::nullopt};
+}
+
+std::vector<std::string> remarks_on(const Scene& scene, const ChosenCamera& camera, const LightSource& source,
+                                    const Options& options) {
+  std::vector<std::string> remarks;
+  const std::string file = options.scene.string();
+  if (scene.dropped_triangles > 0)
+    remarks.push_back(file + ": " + std::to_string(scene.dropped_triangles) +
+                      " triangles of no area left out");
+  for (const std::string& what : scene.left_out) remarks.push_back(file + ": " + what + " left out");
+  for (const std::string& remark : scene.remarks) remarks.push_back(file + ": " + remark);
+  if (!camera.of_scene)
+    remarks.push_back(file + " has no perspective camera; one that sees all of it is used");
+  const LightSet& set = source.lights();
+  if (!options.light_set.empty() && std::none_of(set.lights.begin(), set.lights.end(), has_power))
+    remarks.push_back(
+        options.light_set.string() + ": no light has power" +
+        (set.ambient.maxCoeff() > 0 ? ", only its ambient light is seen" : "; the picture is black"));
+  if (options.probe && !options.light_set.empty())
+    remarks.push_back("--probe: a light set has no picture of its environment; without the mirror ball");
+  return remarks;
 }
 
 Result<std::unique_ptr<LightSource>> open_lights(const Options& options) {

@@ -4,6 +4,8 @@
 
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "render/light_source.h"
 #include "render/options.h"
@@ -16,12 +18,16 @@ struct ChosenCamera {
   std::optional<std::size_t> of_scene;  // which of the scene's, whose motion it follows
 };
 
-// The camera of the options' name, else the scene's first, else one that sees all of it, which is said.
+// The camera of the options' name, else the scene's first, else one that sees all of it.
 // usage: no camera has the name
 Result<ChosenCamera> choose_camera(const Scene& scene, const Options& options);
 
 // Light from where the options say.
 Result<std::unique_ptr<LightSource>> open_lights(const Options& options);
+
+// What of the scene and its light is shown otherwise than one may expect, a line each.
+std::vector<std::string> remarks_on(const Scene& scene, const ChosenCamera& camera, const LightSource& source,
+                                    const Options& options);
 
 // Everything that cannot work is found before the first frame is rendered. failed: a folder is missing.
 Status check_outputs(const Options& options);
