@@ -99,10 +99,14 @@ void Overlay::draw(const Content& content, int width, int height) {
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = ImVec2(static_cast<float>(width), static_cast<float>(height));
   io.DeltaTime = 0.04f;  // nothing here moves by itself
-  ImGui::NewFrame();
-  draw_dome(content);
-  text_window("numbers", content.numbers, ImVec2(8, 8), ImVec2(0, 0));
-  text_window("help", content.help, ImVec2(io.DisplaySize.x / 2, io.DisplaySize.y / 2), ImVec2(0.5f, 0.5f));
+  // A window is hidden until its size is known, from a first layout.
+  for (int layout = 0; layout < 2; ++layout) {
+    if (layout > 0) ImGui::EndFrame();
+    ImGui::NewFrame();
+    draw_dome(content);
+    text_window("numbers", content.numbers, ImVec2(8, 8), ImVec2(0, 0));
+    text_window("help", content.help, ImVec2(io.DisplaySize.x / 2, io.DisplaySize.y / 2), ImVec2(0.5f, 0.5f));
+  }
   ImGui::Render();
   draw(*ImGui::GetDrawData(), width, height);
 }

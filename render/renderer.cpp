@@ -208,9 +208,11 @@ Status Renderer::render(const LightSet& lights, const SceneCamera& camera, doubl
   for (int first = 0; first < samples; first += at_once) {
     if (Status s = render_samples(rows, lights, camera, first, first + at_once, environment_turn_rad); !s)
       return s;
-    if (compositor_)
-      compositor_->add(sums_.last().texture.id(), unshadowed_sums_.last().texture.id(), gbuffer_.surface(),
-                       1 / static_cast<float>(samples), first == 0);
+    if (!compositor_) continue;
+    const double start = now_ms();
+    compositor_->add(sums_.last().texture.id(), unshadowed_sums_.last().texture.id(), gbuffer_.surface(),
+                     1 / static_cast<float>(samples), first == 0);
+    lap(start, times_.shading_ms);
   }
   if (glGetError() != GL_NO_ERROR)
     return Error{ErrorKind::failed, "the OpenGL ES driver failed (out of memory?)"};

@@ -61,8 +61,10 @@ class Renderer {
   [[nodiscard]] double exposure_ev100() const { return tone_mapper_.exposure_ev100(); }
   // Light as if nothing cast shadows, or with them.
   Status set_shadows(bool on);
-  // Bounds what is seen of the scene, but for what supports it.
-  [[nodiscard]] const Sphere& scene_bounds() const { return casters_.scene; }
+  // Bounds what casts shadows, but for what supports the scene; without such all that is seen.
+  [[nodiscard]] const Sphere& object_bounds() const {
+    return casters_.objects.radius > 0 ? casters_.objects : casters_.scene;
+  }
   void tone_map(double dt_s);
   // The same with another operator, which stays.
   void tone_map(ToneMap operation, double dt_s);

@@ -284,7 +284,7 @@ class Session {
     if (on.numbers) content.numbers = overlay_text(numbers());
     if (on.help) content.help = Window::help_lines();
     if (!on.dome) return content;
-    Sphere dome = renderer_->scene_bounds();
+    Sphere dome = renderer_->object_bounds();
     dome.radius *= 1.5f;  // clear of the objects
     const int width = renderer_->width();
     const int height = renderer_->height();

@@ -69,5 +69,16 @@ TEST(Orbit, StartsExactlyAtTheCameraAndComesBack) {
   EXPECT_LT((orbit.camera().world_from_camera - start.world_from_camera).norm(), 1e-5f);
 }
 
+TEST(Orbit, SlidingMovesEyeAndTargetAcrossTheView) {
+  Scene scene;
+  add_box(scene, {-1, -1, -1}, {1, 1, 1}, lambertian(Rgb::Ones()));
+  Orbit orbit(camera_at({0, 0, 4}, {0, 0, 0}), scene);
+  orbit.slide(0.5f, -0.25f);  // of the distance, 4 m
+  const auto eye = [&] { return Vec3f(orbit.camera().world_from_camera.col(3).head<3>()); };
+  EXPECT_LT((eye() - Vec3f(2, -1, 4)).norm(), 1e-5f);
+  orbit.turn(static_cast<float>(kPi), 0);  // about the target, which came along
+  EXPECT_LT((eye() - Vec3f(2, -1, -4)).norm(), 1e-5f);
+}
+
 }  // namespace
 }  // namespace lightwell::render
