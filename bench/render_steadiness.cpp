@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <limits>
 #include <map>
 
 #include "bench/pictures/ray_tracer.h"
@@ -134,7 +134,8 @@ Row steadiness_row(const std::string& scenario, const std::string& name, const r
     reference_before = reference;
   }
   const double mean_frame = total / frames * (frames - 1);
-  Row row{"steadiness", scenario + ", " + name, {}, {}};
+  constexpr double kNotTimed = std::numeric_limits<double>::quiet_NaN();
+  Row row{"steadiness", scenario + ", " + name, {kNotTimed, kNotTimed, kNotTimed, 0}, {}};
   row.values = {{"excess_change", excess / mean_frame},
                 {"reference_change", reference_change / mean_frame},
                 {"relative_rmse", std::sqrt(error / reference_squares)},

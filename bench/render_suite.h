@@ -21,6 +21,8 @@ std::vector<Figure> render_figures(const std::vector<Row>& rows);
 std::vector<Row> render_growth_rows(const Options& options);
 // How much a picture changes from frame to frame beyond what the light makes it.
 std::vector<Row> render_steadiness_rows(const Options& options);
+// The error on each glossy object beside that on the same object made matte.
+std::vector<Row> render_gloss_rows();
 // Mitsuba 3 on the same scenes, by the script in options.peers_folder.
 std::vector<Row> mitsuba_rows(const std::vector<pictures::JudgedPicture>& judged, const Options& options);
 
