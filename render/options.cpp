@@ -87,6 +87,13 @@ Parsed parse_options(int argc, const char* const* argv) {
   app.add_option("--shadow-maps", options.shadow_maps,
                  "most lights to render, each with its map (default: all; live 72)")
       ->check(whole_numbers(1, 100000));
+  app.add_option("--target-fps", options.target_fps,
+                 "holds this frame rate by taking fewer of the lights, the least urgent left out first")
+      ->check(numbers_above_0_to(1000, "above 0 to 1000 frames a second"));
+  app.add_option("--max-error", options.max_error,
+                 "takes the fewest lights whose predicted shadow error (relative) is below this; method best "
+                 "predicts it")
+      ->check(numbers_above_0_to(10, "above 0 to 10"));
   app.add_option("--shadow-size", options.shadow_size, "texels a side of a shadow map")
       ->check(whole_numbers(16, 4096))
       ->capture_default_str();

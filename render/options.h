@@ -26,8 +26,10 @@ struct Options {
   int lights = 72;
   Method method = Method::best;
   Coverage coverage = Coverage::hemisphere;
-  double spin_deg = 0;  // of the environment, a frame
-  int shadow_maps = 0;  // 0: all lights, live 72
+  double spin_deg = 0;               // of the environment, a frame
+  std::optional<double> target_fps;  // held by fewer lights
+  std::optional<double> max_error;   // predicted: kept by the fewest lights
+  int shadow_maps = 0;               // 0: all lights, live 72
   int shadow_size = 256;
   int width = 640;
   int height = 480;

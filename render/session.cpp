@@ -13,6 +13,7 @@
 #include "render/egl_context.h"
 #include "render/gltf_scene.h"
 #include "render/kms_screen.h"
+#include "render/light_budget.h"
 #include "render/light_source.h"
 #include "render/overlay.h"
 #include "render/plate.h"
@@ -58,6 +59,7 @@ class Session {
         source_(source),
         plates_(plates),
         tracking_(tracking),
+        budget_({options.target_fps, options.max_error}),
         look_(options.look),
         show_probe_(options.probe) {}
 
@@ -225,17 +227,22 @@ class Session {
     // Frames of a sequence are 1/25 s apart, live ones as far as they are.
     const double dt_s = options_.live ? seconds_since(last_frame_) : 0.04;
     last_frame_ = start;
-    if (Status s = renderer_->render(source_.lights(), camera, source_.environment_turn_rad()); !s) return s;
+    const LightSet& lights = budget_.choose(source_.lights());
+    if (budget_.lacks_prediction() && !said_no_prediction_) {
+      say("--max-error: these lights carry no prediction of their error (method best does); all are taken");
+      said_no_prediction_ = true;
+    }
+    if (Status s = renderer_->render(lights, camera, source_.environment_turn_rad()); !s) return s;
     if (Status s = show_probe(camera); !s) return s;
     renderer_->tone_map(dt_s);
     renderer_->finish();
     times.ms = last_ms_ = seconds_since(start) * 1e3;
+    budget_.frame_took(last_ms_);
     times.cpu_ms = cpu_ms() - cpu_start;
     times.passes = renderer_->pass_times();
     if (!options_.stats.empty()) statistics_.frames.push_back(times);
-    const auto& lights = source_.lights().lights;
-    statistics_.lights = lights.size();
-    statistics_.predicted_error = lights.empty() ? 0 : lights.back().predicted_error;
+    statistics_.lights = lights.lights.size();
+    statistics_.predicted_error = lights.lights.empty() ? 0 : lights.lights.back().predicted_error;
     statistics_.shadow_maps = renderer_->shadow_maps();
     const int number = frame_++;
     return write(number, true);
@@ -289,7 +296,7 @@ class Session {
     const int width = renderer_->width();
     const int height = renderer_->height();
     const View view = make_view(window.camera(), width, height);
-    content.markers = dome_markers(source_.lights().lights, dome, view, width, height);
+    content.markers = dome_markers(budget_.chosen().lights, dome, view, width, height);
     content.lines = dome_lines(dome, view, width, height);
     return content;
   }
@@ -305,7 +312,7 @@ class Session {
     ViewNumbers n;
     n.fps = fps_;
     n.frame_ms = last_ms_;
-    n.lights = source_.lights().lights.size();
+    n.lights = statistics_.lights;
     n.shadow_maps = statistics_.shadow_maps;
     n.shadow_size = options_.shadow_size;
     n.light_arrived = source_.ready();
@@ -326,6 +333,8 @@ class Session {
   TrackingStream* tracking_;
   std::optional<Renderer> renderer_;
   Statistics statistics_;
+  LightBudget budget_;
+  bool said_no_prediction_ = false;
   Look look_;
   bool show_probe_ = false;
   double fps_ = 0;
