@@ -81,7 +81,7 @@ TEST_F(Viewing, AnEightBitPlateSaysWhatItsWhiteCountsAs) {
   EXPECT_NE(program.stderr_text().find("--plate-white"), std::string::npos) << program.stderr_text();
 }
 
-TEST_F(Viewing, ATrackerMovesTheCamera) {
+TEST_F(Viewing, ATrackerMovesTheCameraWhichStaysWhenTheStreamStops) {
   ChildProcess still = start({"--size", "32x24", "--out", file("still.exr")});
   ASSERT_EQ(still.wait(), 0) << still.stderr_text();
   ChildProcess program = start({"--size", "32x24", "--seconds", "600", "--tracking", "freed:127.0.0.1:0",
@@ -110,6 +110,7 @@ TEST_F(Viewing, ATrackerMovesTheCamera) {
             29);
   ::close(sender);
   ASSERT_TRUE(program.wait_for_line("tracking from 127.0.0.1")) << program.stderr_text();
+  ASSERT_TRUE(program.wait_for_line("no tracking for 1 s; keeping the last pose")) << program.stderr_text();
   program.send(SIGTERM);
   ASSERT_EQ(program.wait(), 0) << program.stderr_text();
   const LatLongImage before = exr("still.exr");

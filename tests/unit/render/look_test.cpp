@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "interface/atomic_file.h"
 #include "render/false_colour.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/unit/render/render_fixture.h"
 
 namespace lightwell {
@@ -124,6 +126,19 @@ TEST_F(Looks, FalseColourInStopsCountsFromMiddleGreyAtTheExposure) {
     for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(p.rgba[c], expected[c]) << stop;
   }
   EXPECT_EQ(scale.colour(0), (render::Rgb8{119, 119, 119}));
+}
+
+TEST(LooksOfFiles, APngSaysWhichCurveItsCodesHave) {
+  const TemporaryFolder folder;
+  const auto holds = [&](Display display, const std::string& chunk) {
+    EXPECT_TRUE(render::write_png(folder.path() / "a.png", {1, 1, {1, 2, 3, 255}, display}));
+    return read_text_file(folder.path() / "a.png").value().find(chunk) != std::string::npos;
+  };
+  EXPECT_TRUE(holds(Display::srgb, "sRGB"));
+  // gAMA is 100000 times the exponent of the codes, big-endian.
+  EXPECT_TRUE(holds(Display::linear, std::string("gAMA\x00\x01\x86\xA0", 8)));
+  EXPECT_TRUE(holds(Display::rec709, std::string("gAMA\x00\x00\xC7\x38", 8)));
+  EXPECT_FALSE(holds(Display::rec709, "sRGB"));
 }
 
 TEST(FalseColourScale, EveryStopHasItsOwnColourAndBoundsAreBlackAndWhite) {

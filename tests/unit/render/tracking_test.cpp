@@ -179,17 +179,26 @@ TEST(OpenTrackIo, AMalformedDatagramIsRefusedAndTheNextIsRead) {
     wrong.back()[at] ^= 0x11;
   }
   wrong.push_back(datagram(kSample, 0, true, 2));
-  for (const char* text :
-       {"", "{", "[]", "7", "null", R"({"transforms":[]})", R"({"transforms":[7]})", R"({"transforms":{}})",
-        R"({"transforms":[{"translation":{"x":NaN,"y":0,"z":0}}]})",
-        R"({"transforms":[{"translation":{"x":1e999,"y":0,"z":0}}]})",
-        R"({"transforms":[{"translation":{"x":1e7,"y":0,"z":0}}]})",
-        R"({"transforms":[{"translation":{"x":"1","y":0,"z":0}}]})",
-        R"({"transforms":[{"translation":{"x":1,"y":0}}]})",
-        R"({"transforms":[{"rotation":{"pan":1e30,"tilt":0,"roll":0}}]})",
-        R"({"transforms":[{"scale":{"x":1e300,"y":0,"z":0}}]})",
-        R"({"lens":{"pinholeFocalLength":0},"transforms":[{}]})",
-        R"({"lens":{"pinholeFocalLength":-5},"transforms":[{}]})", R"({"lens":[],"transforms":[{}]})"})
+  for (const char* text : {"",
+                           "{",
+                           "[]",
+                           "7",
+                           "null",
+                           R"({"transforms":[]})",
+                           R"({"transforms":[7]})",
+                           R"({"transforms":{}})",
+                           R"({"transforms":[{"translation":{"x":NaN,"y":0,"z":0}}]})",
+                           R"({"transforms":[{"translation":{"x":1e999,"y":0,"z":0}}]})",
+                           R"({"transforms":[{"translation":{"x":1e7,"y":0,"z":0}}]})",
+                           R"({"transforms":[{"translation":{"x":"1","y":0,"z":0}}]})",
+                           R"({"transforms":[{"translation":{"x":1,"y":0}}]})",
+                           R"({"transforms":[{"rotation":{"pan":1e30,"tilt":0,"roll":0}}]})",
+                           R"({"transforms":[{"scale":{"x":1e300,"y":0,"z":0}}]})",
+                           R"({"lens":{"pinholeFocalLength":0},"transforms":[{}]})",
+                           R"({"sourceNumber":0,"transforms":[{}]})",
+                           R"({"sourceNumber":201,"transforms":[{}]})",
+                           R"({"lens":{"pinholeFocalLength":-5},"transforms":[{}]})",
+                           R"({"lens":[],"transforms":[{}]})"})
     wrong.push_back(datagram(text));
   for (const Bytes& bytes : wrong) {
     const auto taken = reader.take(bytes);
