@@ -8,6 +8,7 @@
 #include "interface/atomic_file.h"
 #include "interface/calibration_io.h"
 #include "interface/recording.h"
+#include "tests/support/gltf_document.h"
 
 using namespace lightwell;
 
@@ -131,6 +132,44 @@ void imports(const std::filesystem::path& folder) {
             control + "],\n" + end);
 }
 
+// A triangle as it is, and one that is skinned, morphs and moves.
+void scenes(const std::filesystem::path& folder) {
+  using test::animate;
+  using test::json;
+  test::Document d = test::triangle();
+  json& attributes = d.primitive()["attributes"];
+  attributes["NORMAL"] = d.add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 5126, 3);
+  attributes["TEXCOORD_0"] = d.add<float>({0, 0, 1, 0, 0, 1}, "VEC2", 5126, 2);
+  attributes["COLOR_0"] = d.add<float>({1, 0, 0, 0, 1, 0, 0, 0, 1}, "VEC3", 5126, 3);
+  write(folder / "still.gltf", d.text());
+  attributes["JOINTS_0"] = d.add<std::uint8_t>({0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0}, "VEC4", 5121, 4);
+  attributes["WEIGHTS_0"] = d.add<float>({1, 0, 0, 0, 0.5F, 0.5F, 0, 0, 1, 0, 0, 0}, "VEC4", 5126, 4);
+  const int target = d.add<float>({0, 0, 1, 0, 0, 0, 0, 0, 1}, "VEC3", 5126, 3);
+  const int places = d.add<std::uint16_t>({1}, "SCALAR", 5123, 1);
+  const int values = d.add<float>({0, 1, 0}, "VEC3", 5126, 3);
+  d.root["accessors"][static_cast<std::size_t>(target)]["sparse"] = {
+      {"count", 1},
+      {"indices", {{"bufferView", places}, {"componentType", 5123}}},
+      {"values", {{"bufferView", values}}}};
+  d.primitive()["targets"] = json::array({{{"POSITION", target}}});
+  d.primitive()["indices"] = d.add<std::uint16_t>({0, 1, 2}, "SCALAR", 5123, 1);
+  d.primitive()["material"] = 0;
+  d.root["materials"] = json::array({{{"alphaMode", "MASK"},
+                                      {"emissiveFactor", {1, 0, 0}},
+                                      {"extras", {{"phong", {{"diffuse", {1, 1, 1}}, {"exponent", 9}}}}}}});
+  d.root["skins"] = json::array({{{"joints", {1, 2}}}});
+  d.root["cameras"] =
+      json::array({{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}});
+  d.root["nodes"] = json::array({{{"mesh", 0}, {"skin", 0}},
+                                 {{"children", json::array({2})}, {"scale", {1, 2, 1}}},
+                                 {{"translation", {0, 1, 0}}, {"camera", 0}}});
+  d.root["scenes"][0]["nodes"] = {0, 1};
+  animate(d, 2, "rotation", {0, 1}, {0, 0, 0, 1, 0, 0, 1, 0}, "VEC4", 4);
+  animate(d, 1, "translation", {0, 1}, std::vector<float>(18, 1), "VEC3", 3, "CUBICSPLINE");
+  animate(d, 0, "weights", {0, 1}, {0, 1}, "SCALAR", 1, "STEP");
+  write(folder / "moving.gltf", d.text());
+}
+
 void radiance(const std::filesystem::path& folder) {
   const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\nCOLORCORR=1 1 2\n";
   write(folder / "flat.hdr", head + "\n-Y 2 +X 2\n" + std::string(16, '\x80'));
@@ -195,6 +234,7 @@ int main(int argc, char** argv) {
   patches(folder / "patches");
   imports(folder);
   radiance(folder / "radiance_hdr");
+  scenes(folder / "gltf");
   takes(folder / "recording");
   tracking(folder / "tracking");
   return 0;
