@@ -60,7 +60,11 @@ void CasterBuffers::draw_objects(GLsizei instances) const {
 }
 
 void CasterBuffers::draw_supports() const {
+  // Only those that turn their back to the light are in its way.
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_FRONT);
   run(2, 1);
+  glDisable(GL_CULL_FACE);
 }
 
 }  // namespace lightwell::render

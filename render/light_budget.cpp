@@ -23,7 +23,7 @@ std::size_t step(std::size_t count) {
 
 // From the median of the last frames: one slow frame is no reason.
 std::size_t LightBudget::affordable(std::size_t now, std::size_t all) const {
-  if (!goals_.fps || frames_ == 0) return now;
+  if (!goals_.fps || frames_ < 3) return now;
   const auto known = static_cast<std::size_t>(std::min<int>(frames_, static_cast<int>(ms_.size())));
   const double used =
       median(std::vector<double>(ms_.begin(), ms_.begin() + static_cast<std::ptrdiff_t>(known))) *
@@ -48,6 +48,10 @@ const LightSet& LightBudget::choose(const LightSet& all) {
   chosen_ = &all;
   const std::size_t size = all.lights.size();
   if ((!goals_.fps && !goals_.max_error) || size == 0) return all;
+  // The dark says nothing of how many lights the next light needs.
+  const bool dark = std::none_of(all.lights.begin(), all.lights.end(),
+                                 [](const auto& light) { return (light.illuminance > 0).any(); });
+  if (dark) return all;
   std::size_t count = affordable(count_ == 0 ? size : std::min(count_, size), size);
   lacks_prediction_ =
       goals_.max_error && std::all_of(all.lights.begin(), all.lights.end(),

@@ -9,8 +9,9 @@
 
 namespace lightwell::render {
 
-// Of a progressive light set as many lights as the frame time affords, and no more than an error asks for. Their number
-// changes by a sixteenth a frame at the most (but one at the least), the least urgent lights first: so no step pops.
+// Of a progressive light set as many lights as the frame time affords, and no more than an error asks for. For the frame
+// rate their number changes by a sixteenth a frame at the most (but one at the least), the least urgent lights first: so no
+// step pops. What an error asks for is there at once, and given up at that pace.
 class LightBudget {
  public:
   struct Goals {

@@ -75,7 +75,8 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   auto gbuffer = GBuffer::create(scene, r.casters_);
   if (!gbuffer) return gbuffer.error();
   ShadowAtlasOptions atlas_options{options.shadow_size, options.texels_by_power};
-  if (options.texels_by_power)
+  r.fitted_scene_ = r.casters_.scene;
+  if (ShadowAtlas::has_large_maps(atlas_options))
     r.fine_casters_ = find_casters(scene, options.simplify_casters ? kLargestMap * options.shadow_size : 0);
   auto atlas = ShadowAtlas::create(r.casters_, r.fine_casters_, atlas_options);
   if (!atlas) return atlas.error();
@@ -112,7 +113,13 @@ void Renderer::move(const Scene& scene, std::span<const std::size_t> moved) {
   if (moved.empty()) return;
   gbuffer_.move(scene, moved);
   if (options_.texels_by_power) fine_casters_.move(scene, moved);
-  atlas_.move(casters_, fine_casters_);
+  const bool casts = std::any_of(moved.begin(), moved.end(),
+                                 [&](std::size_t i) { return scene.primitives[i].casts_shadow; });
+  if (casts || casters_.scene.radius != fitted_scene_.radius ||
+      casters_.scene.centre != fitted_scene_.centre) {
+    fitted_scene_ = casters_.scene;
+    atlas_.move(casters_, fine_casters_);
+  }
 }
 
 Status Renderer::resize(int width, int height) {
@@ -229,7 +236,7 @@ Status Renderer::render_samples(std::span<LightRow> all, const LightSet& lights,
   // At least once, so that ambient light and background are drawn without any light.
   for (std::size_t first = 0; first == 0 || first < all.size(); first += capacity) {
     const auto block = all.subspan(first, std::min(capacity, all.size() - first));
-    if (!nothing_casts_ && !block.empty()) {
+    if (!nothing_casts_ && shadows_ && !block.empty()) {
       if (Status s = atlas_.draw(block, casters_, fine_casters_); !s) return s;
       cutouts_.draw(atlas_);
       shadow_maps_drawn_ += atlas_.drawn();

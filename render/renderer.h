@@ -80,6 +80,8 @@ class Renderer {
   [[nodiscard]] std::size_t shadow_maps() const { return shadow_maps_; }
   // Of these, drawn for it: the others stood from frames before.
   [[nodiscard]] std::size_t shadow_maps_drawn() const { return shadow_maps_drawn_; }
+  // Side of the last frame's largest map, texels.
+  [[nodiscard]] int largest_map() const { return atlas_.largest(); }
   [[nodiscard]] const PassTimes& pass_times() const { return times_; }
   [[nodiscard]] static std::string gl_renderer();
   // Largest side of a picture.
@@ -120,6 +122,7 @@ class Renderer {
   ToneMapper tone_mapper_;
   Casters casters_;
   Casters fine_casters_;  // for maps larger than shadow_size
+  Sphere fitted_scene_;   // what the maps in the atlas were drawn for
   gl::Program surfaces_;
   gl::Program background_;
   gl::Program lay_over_;  // made when it is first needed

@@ -39,12 +39,15 @@ int ShadowAtlas::side_limit() {
   return std::min(4096, static_cast<int>(driver));
 }
 
+bool ShadowAtlas::has_large_maps(const ShadowAtlasOptions& options) {
+  return options.texels_by_power && options.map_size >= kLeastMap;
+}
+
 Result<ShadowAtlas> ShadowAtlas::create(const Casters& coarse, const Casters& fine,
                                         const ShadowAtlasOptions& options) {
   ShadowAtlas atlas;
   atlas.options_ = options;
-  const bool divides = options.texels_by_power && options.map_size >= kLeastMap;
-  atlas.unit_ = divides ? std::max(options.map_size / 4, 1) : options.map_size;
+  atlas.unit_ = has_large_maps(options) ? std::max(options.map_size / 4, 1) : options.map_size;
   auto program = gl::make_program("shadow_vertex", "empty_fragment");
   if (!program) return program.error();
   atlas.program_ = std::move(program).value();
@@ -97,7 +100,7 @@ void ShadowAtlas::match(std::span<const LightRow> rows, std::vector<Tile>& tiles
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Tile tile;
     tile.row = rows[i];
-    tile.side = wished[i];
+    tile.side = tile.wished = wished[i];
     std::size_t best = tiles_.size();
     float least = std::numeric_limits<float>::infinity();
     for (std::size_t k = 0; k < tiles_.size(); ++k) {
@@ -106,13 +109,17 @@ void ShadowAtlas::match(std::span<const LightRow> rows, std::vector<Tile>& tiles
       // Sides change by powers of two: one step is no reason to draw.
       if (there.side > 2 * wished[i] || 2 * there.side < wished[i]) continue;
       const float away = distance(there.row, rows[i]);
-      if (away < least && away <= 2 * kMovedTexels / static_cast<float>(there.side * unit_)) {
+      // What lies at the edge of the sphere comes that far, times its radius.
+      const float radius = std::abs(there.row.extent_m) / (2 * kDepthPadding);
+      const float finest_m = there.row.texel / std::max(there.row.fit[0], there.row.fit[1]);
+      if (away < least && away * radius <= kMovedTexels * finest_m) {
         least = away;
         best = k;
       }
     }
     if (best < tiles_.size()) {
       tile = tiles_[best];
+      tile.wished = wished[i];
       kept[best] = 1;
     }
     tiles.push_back(tile);
@@ -138,8 +145,11 @@ Status ShadowAtlas::place(std::vector<Tile>& tiles) {
   double units = 0;
   for (Tile& tile : tiles) {
     tile.stale = true;
+    tile.side = tile.wished;
     units += static_cast<double>(tile.side) * tile.side;
   }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const Tile* a, const Tile* b) { return a->side > b->side; });
   const int step = std::max(options_.map_size / unit_, 1);
   int side = std::min(limit, (static_cast<int>(std::ceil(std::sqrt(units))) + step - 1) / step * step);
   side = std::max(side, allocator_.side());
@@ -151,12 +161,18 @@ Status ShadowAtlas::place(std::vector<Tile>& tiles) {
     }
     if (std::all_of(order.begin(), order.end(), [&](Tile* tile) { return take(*tile); })) return {};
     if (side < limit) continue;
-    // What tiles kept beyond their share goes first; equal tiles always fit (capacity).
+    // Shares may leave gaps where the atlas's side is no power of two; equal tiles always fit (capacity).
     for (Tile& tile : tiles) tile.side = std::min(tile.side, step);
     allocator_.reset(side);
     if (std::all_of(order.begin(), order.end(), [&](Tile* tile) { return take(*tile); })) return {};
     return Error{ErrorKind::failed, "the shadow maps do not fit their atlas"};
   }
+}
+
+int ShadowAtlas::largest() const {
+  int side = 0;
+  for (const Tile& tile : tiles_) side = std::max(side, tile.side * unit_);
+  return side;
 }
 
 void ShadowAtlas::bind() const {

@@ -28,6 +28,8 @@ class ShadowAtlas {
   static Result<ShadowAtlas> create(const Casters& coarse, const Casters& fine,
                                     const ShadowAtlasOptions& options);
 
+  // True where some lights' maps are larger than map_size.
+  static bool has_large_maps(const ShadowAtlasOptions& options);
   // Largest side of an atlas on this driver: 4096, which small boards have, or what the driver allows.
   static int side_limit();
   // Lights whose maps the atlas holds at once.
@@ -42,6 +44,7 @@ class ShadowAtlas {
   // Gives each row, at most capacity(), its map, and draws what is not there yet. The casters are those it was made of. A
   // light that moved so little that its map stands takes the map's direction.
   Status draw(std::span<LightRow> rows, const Casters& coarse, const Casters& fine);
+  [[nodiscard]] int largest() const;  // side of the last draw()'s largest map, texels
   // Maps drawn by the last draw(), and their MapRows into the atlas's clip space: for what else is to stand in them.
   [[nodiscard]] std::size_t drawn() const { return drawn_; }
   [[nodiscard]] GLuint instances() const { return instances_.id(); }
@@ -52,6 +55,7 @@ class ShadowAtlas {
   struct Tile {
     LightRow row{};  // as it was drawn
     int side = 0;    // units
+    int wished = 0;  // its share
     TileAllocator::Corner at{0, 0};
     bool stale = true;
   };

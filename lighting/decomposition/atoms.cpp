@@ -16,6 +16,8 @@ constexpr double kDegree = kPi / 180;
 constexpr int kColumns = 60;  // of 6°
 constexpr int kMostAtoms = 6144;
 constexpr int kPartsOfACell = 18;  // 3 × 6
+// A part with so much of the light is shown bin by bin: a sun's own disc and glare, where the map resolves them.
+constexpr double kBinsFromShare = 1.0 / 200;
 
 int edge(int begin, int end, int part, int parts) {
   return begin + static_cast<int>(std::int64_t{end - begin} * part / parts);
@@ -180,8 +182,9 @@ void AtomMaker::add_block(const Cell& cell, const Block& block, Atoms& atoms) co
   atoms.add(direction, value / atoms.scale, solid_angle(block));
 }
 
-// One cell, its bins 1° × 1° or so at a time.
-void AtomMaker::add_parts(const PolarMap& map, const Block& block, Atoms& atoms) const noexcept {
+// One cell, its bins 1° × 1° or so at a time; kept_free: places for what comes after it.
+void AtomMaker::add_parts(const PolarMap& map, const Block& block, int kept_free,
+                          Atoms& atoms) const noexcept {
   const int rings = std::min(3, block.ring1 - block.ring0);
   const int columns = std::min(6, block.sector1 - block.sector0);
   for (int ring = 0; ring < rings; ++ring)
@@ -190,7 +193,18 @@ void AtomMaker::add_parts(const PolarMap& map, const Block& block, Atoms& atoms)
                        edge(block.ring0, block.ring1, ring + 1, rings),
                        edge(block.sector0, block.sector1, column, columns),
                        edge(block.sector0, block.sector1, column + 1, columns)};
-      add_block(sum_bins(map, part), part, atoms);
+      const Cell sum = sum_bins(map, part);
+      const int bins = (part.ring1 - part.ring0) * (part.sector1 - part.sector0);
+      const bool bright = luminance(Rgbd(sum.r, sum.g, sum.b)) > kBinsFromShare * atoms.scale;
+      if (!bright || bins < 2 || atoms.count + bins + kept_free > capacity_) {
+        add_block(sum, part, atoms);
+        continue;
+      }
+      for (int r = part.ring0; r < part.ring1; ++r)
+        for (int s = part.sector0; s < part.sector1; ++s) {
+          const Block bin{r, r + 1, s, s + 1};
+          add_block(sum_bins(map, bin), bin, atoms);
+        }
     }
 }
 
@@ -238,7 +252,7 @@ void AtomMaker::make(const PolarMap& map, Atoms& atoms) noexcept {
           const Cell& cell = quarter[i][k];
           const int room = capacity_ - atoms.count - (rows - row) * kColumns;
           if (luminance(Rgbd(cell.r, cell.g, cell.b)) > fine && room >= kPartsOfACell)
-            add_parts(map, at(i, k), atoms);
+            add_parts(map, at(i, k), (rows - row) * kColumns + kPartsOfACell, atoms);
           else
             add_block(cell, at(i, k), atoms);
         }

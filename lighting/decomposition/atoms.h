@@ -60,7 +60,7 @@ class AtomMaker {
 
   void sum_cells(const PolarMap& map) noexcept;
   void add_block(const Cell& cell, const Block& block, Atoms& atoms) const noexcept;
-  void add_parts(const PolarMap& map, const Block& block, Atoms& atoms) const noexcept;
+  void add_parts(const PolarMap& map, const Block& block, int kept_free, Atoms& atoms) const noexcept;
   [[nodiscard]] Cell sum_bins(const PolarMap& map, const Block& block) const noexcept;
   [[nodiscard]] double solid_angle(const Block& block) const noexcept;
 

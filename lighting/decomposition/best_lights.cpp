@@ -32,7 +32,7 @@ constexpr double kStale = 2;
 constexpr double kStillStale = 1.3;  // after exchange
 constexpr double kWorthACut = 0.7;
 constexpr double kCostForgotten = 0.99;     // a frame: what it may double from
-constexpr int kMostLightsPlacedAnew = 128;  // more take longer than a frame
+constexpr int kMostLightsPlacedAnew = 256;  // they take 60 ms, more much longer
 
 // Few lights miss so much of any map that the cost says little of a change. The map's Lambertian moments do: where they
 // have changed by so much, other places are tried, and to take them it needs a cut or half of the cost.

@@ -37,7 +37,7 @@ void main() {
   vec4 shadowed = texelFetch(shadowed_map, at, 0);
   vec3 behind = plate();
   vec3 seen = shadowed.rgb + behind * (1.0 - shadowed.a);
-  if (shadowed.a > 0.0 && unpackHalf2x16(texelFetch(surface_map, at, 0).w).y == 0.0) {
+  if (shadowed.a > 0.0 && (texelFetch(surface_map, at, 0).w & 3u) == 0u) {
     vec3 without = texelFetch(unshadowed_map, at, 0).rgb;
     vec3 ratio = min(shadowed.rgb / max(without, 1e-37), 1.0);
     seen = behind * mix(vec3(1.0), ratio, greaterThan(without, vec3(1e-37)));

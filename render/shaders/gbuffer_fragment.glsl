@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
 // The small G-buffer: position and material number (from 1; 0 is background), then the shading normal as an octahedral
-// pair of 16 bits, three halves of base colour from texture and vertex and the roughness and metallic from theirs, and
-// whether the surface stands in the shadow maps (0 no, 1 yes, 0.5 a support); where the scene has such, emitted radiance.
+// pair of 16 bits, three halves of base colour from texture and vertex and the roughness from its texture; where the scene
+// has such, emitted radiance. The last word of the surface: 2 bits of how it stands in the shadow maps (0 not, 1 it casts,
+// 2 a support seen from behind, 3 from its front), 8 of metallic, and the normal of its plane as an octahedral pair of 11.
 // HAS_DETAIL: textures, vertex colours, holes.
 in vec3 world_position;
 in vec3 world_normal;
@@ -66,11 +67,23 @@ vec2 octahedral(vec3 n) {
   return (1.0 - abs(p.yx)) * vec2(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0);
 }
 
+// Of the triangle itself, toward the side that is seen; shadow maps are compared with this plane.
+uint plane_normal(vec3 n) {
+  vec3 along_x = dFdx(world_position), along_y = dFdy(world_position);
+  float longest = max(max(abs(along_x.x), abs(along_x.y)), abs(along_x.z));
+  longest = max(longest, max(max(abs(along_y.x), abs(along_y.y)), abs(along_y.z)));
+  vec3 plane = longest > 0.0 ? cross(along_x / longest, along_y / longest) : n;
+  if (!(dot(plane, plane) > 0.0)) plane = n;
+  uvec2 p = uvec2((octahedral(normalize(plane) * (dot(plane, n) < 0.0 ? -1.0 : 1.0)) * 0.5 + 0.5) * 2047.0 + 0.5);
+  return p.x << 10 | p.y << 21;
+}
+
 void main() {
   float side = gl_FrontFacing ? 1.0 : -1.0;
   vec3 n = normalize(world_normal) * side;
   vec3 tint = vec3(1.0);
   vec2 rough_metallic = vec2(1.0);
+  uint maps = plane_normal(n) | (in_shadow_map == 0.5 ? (gl_FrontFacing ? 3u : 2u) : uint(in_shadow_map));
 #if HAS_DETAIL
   vec4 base = texture(base_color_map, place(base_color_uv)) * vertex_color;
   rough_metallic = texture(metallic_roughness_map, place(metallic_roughness_uv)).gb;
@@ -82,7 +95,7 @@ void main() {
 #endif
   position_material = vec4(world_position, material_number);
   surface = uvec4(packSnorm2x16(octahedral(n)), packHalf2x16(tint.rg), packHalf2x16(vec2(tint.b, rough_metallic.x)),
-                  packHalf2x16(vec2(rough_metallic.y, in_shadow_map)));
+                  maps | uint(clamp(rough_metallic.y, 0.0, 1.0) * 255.0 + 0.5) << 2);
 #if HAS_EMISSION
   vec3 light = emission;
 #if HAS_DETAIL

@@ -49,7 +49,7 @@ Surface unpack(vec4 position_material, uvec4 packed_surface) {
   s.to_eye = normalize(eye - position_material.xyz);
   s.mirrored = reflect(-s.to_eye, s.normal);
   s.phong = a.w > 0.5;
-  float metallic = b.x * unpackHalf2x16(packed_surface.w).x;
+  float metallic = b.x * float(packed_surface.w >> 2 & 255u) / 255.0;
   float rough = b.y * blue_rough.y;
   s.diffuse = s.phong ? base : base * (1.0 - metallic);
   s.specular = s.phong ? b.rgb : mix(vec3(0.04), base, metallic);
@@ -93,18 +93,17 @@ vec3 reflectance(Surface s, vec3 to_light, float cosine) {
 struct Maps {
   vec3 from_objects, from_scene;  // to the surface
   float bias;                     // 0 where the surface does not stand in the maps, else 1
-  bool on_support;
+  bool behind_support;
+  vec3 plane;  // normal of the triangle itself
 };
 
 // 1 lit, 0 in shadow, between them what bilinear weights of the nearest four texels make of them. Outside its map
 // everything is lit. The axes are map_rows's.
-float visibility(Maps maps, vec4 tile_blur, vec4 fit, float texel, vec3 normal, vec3 to_light, float extent,
-                 float cosine) {
+float visibility(Maps maps, vec4 tile_blur, vec4 fit, float texel, vec3 to_light, float extent) {
   float size = abs(extent);
   // Each texel is compared with the depth that the surface's own plane has there, not with that of the point: so no
-  // slope needs a bias. The rest (CASTER_SLACK, in texels along the normal) is for curvature and casters simpler than
-  // what is seen.
-  vec3 p = (extent > 0.0 ? maps.from_scene : maps.from_objects) + normal * (maps.bias * tile_blur.w * CASTER_SLACK);
+  // slope needs a bias. The rest (CASTER_SLACK, in texels along the normal) is for casters simpler than what is seen.
+  vec3 p = (extent > 0.0 ? maps.from_scene : maps.from_objects) + maps.plane * (maps.bias * tile_blur.w * CASTER_SLACK);
   vec3 u = abs(to_light.y) < 0.9 ? vec3(to_light.z, 0.0, -to_light.x) : vec3(0.0, -to_light.z, to_light.y);
   u *= inversesqrt(dot(u, u));
   vec3 v = cross(to_light, u);
@@ -115,14 +114,15 @@ float visibility(Maps maps, vec4 tile_blur, vec4 fit, float texel, vec3 normal, 
   vec2 part = at - corner;
   vec4 depths = textureGather(shadow_maps, (corner + 1.0) / atlas_side);
   float depth = 0.5 - dot(to_light, p) / size - DEPTH_SLACK;
-  vec2 slope = vec2(dot(u, normal), dot(v, normal)) * texel / (fit.xy * (size * max(cosine, LEAST_COSINE))) * maps.bias;
+  float cosine = max(dot(maps.plane, to_light), LEAST_COSINE);
+  vec2 slope = vec2(dot(u, maps.plane), dot(v, maps.plane)) * texel / (fit.xy * (size * cosine)) * maps.bias;
   vec2 low = -part * slope, high = low + slope;
   vec4 plane = depth + vec4(low.x, high.x, high.x, low.x) + vec4(high.y, high.y, low.y, low.y);
   vec4 lit4 = step(min(plane, 1.0), depths);
   vec2 row = mix(lit4.wx, lit4.zy, part.x);
   float lit = mix(row.x, row.y, part.y);
   // The side of a support that a light behind it sees: nothing of the scene is on that side.
-  return inside == place && !(maps.on_support && extent > 0.0) ? lit : 1.0;
+  return inside == place && !(maps.behind_support && extent > 0.0) ? lit : 1.0;
 }
 
 void main() {
@@ -130,12 +130,13 @@ void main() {
   vec4 position_material = texelFetch(position_material_map, at, 0);
   uvec4 packed_surface = texelFetch(surface_map, at, 0);
   Surface s = unpack(position_material, packed_surface);
-  float in_shadow_map = unpackHalf2x16(packed_surface.w).y;
+  uint in_shadow_maps = packed_surface.w & 3u;
   Maps maps;
   maps.from_objects = position_material.xyz - objects_centre;
   maps.from_scene = position_material.xyz - scene_centre;
-  maps.bias = in_shadow_map == 1.0 ? 1.0 : 0.0;
-  maps.on_support = in_shadow_map == 0.5;
+  maps.bias = in_shadow_maps == 1u ? 1.0 : 0.0;
+  maps.behind_support = in_shadow_maps == 2u;
+  maps.plane = from_octahedral(vec2(packed_surface.w >> 10 & 2047u, packed_surface.w >> 21) * (2.0 / 2047.0) - 1.0);
   int count = light_count;
   // Ambient light reaches every surface: albedo times radiance. A lobe's albedo is taken at normal incidence.
   vec3 sum = (s.diffuse + s.specular) * ambient * coverage;
@@ -148,8 +149,7 @@ void main() {
     vec3 to_light = to_light_extent.xyz;
     float cosine = max(dot(s.normal, to_light), 0.0);
 #if HAS_SHADOWS
-    light.rgb *= visibility(maps, lights[i].tile_blur, lights[i].fit, light.w, s.normal, to_light, to_light_extent.w,
-                            cosine);
+    light.rgb *= visibility(maps, lights[i].tile_blur, lights[i].fit, light.w, to_light, to_light_extent.w);
 #endif
     sum += light.rgb * cosine * reflectance(s, to_light, cosine);
   }

@@ -55,10 +55,30 @@ TEST(LightBudget, HoldsTheFrameRateWithAsManyLightsAsItAffordsAndNeverJumps) {
   EXPECT_EQ(before, 200u);
 }
 
+TEST(LightBudget, OneSlowFrameTakesNoLight) {
+  LightBudget budget({30.0, {}});
+  const LightSet all = chain(40);
+  for (int frame = 0; frame < 40; ++frame) {
+    EXPECT_EQ(budget.choose(all).lights.size(), 40u) << frame;
+    budget.frame_took(frame % 7 == 0 ? 900 : 25);  // of 33 ms, the first one too
+  }
+}
+
+TEST(LightBudget, DarkFramesChangeNothingAndLackNoPrediction) {
+  LightBudget budget({{}, 0.031});
+  const LightSet all = chain(72);
+  LightSet dark = chain(72, false);
+  for (DirectionalLight& light : dark.lights) light.illuminance = Rgb::Zero();
+  const std::size_t before = budget.choose(all).lights.size();
+  static_cast<void>(budget.choose(dark));
+  EXPECT_FALSE(budget.lacks_prediction());
+  EXPECT_EQ(budget.choose(all).lights.size(), before);
+}
+
 TEST(LightBudget, AFrameRateOutOfReachLeavesOneLight) {
   LightBudget budget({1000.0, {}});
   const LightSet all = chain(20);
-  for (int frame = 0; frame < 100; ++frame) {
+  for (int frame = 0; frame < 200; ++frame) {
     EXPECT_GE(budget.choose(all).lights.size(), 1u);
     budget.frame_took(50);
   }

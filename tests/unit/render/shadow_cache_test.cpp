@@ -106,6 +106,23 @@ TEST_F(ShadowCache, AMoveTooSmallToSeeIsLeftAndAddsUpUntilItIsDrawn) {
   EXPECT_LE(drawn, 12u);
 }
 
+// 64 lights of 512² fill an atlas of 4096²: where they do not fit as they stand, a sun must not lose its texels.
+TEST_F(ShadowCache, InAFullAtlasStrongLightsKeepTheirTexels) {
+  render::RendererOptions options;
+  options.width = 40;
+  options.height = 30;
+  options.shadow_size = 512;
+  auto made = render::Renderer::create(scene_, options);
+  ASSERT_TRUE(made.ok());
+  for (unsigned frame = 0; frame < 6; ++frame) {
+    LightSet lights = some_lights(frame, 64);
+    lights.lights[0].direction = Vec3f(0.3f, 1, 0.2f).normalized();
+    lights.lights[0].illuminance = Rgb::Constant(1e5f);
+    ASSERT_TRUE(made->render(lights, camera_).ok());
+    EXPECT_GE(made->largest_map(), 1024) << frame;
+  }
+}
+
 TEST_F(ShadowCache, AnyHistoryGivesThePictureOfAFirstFrame) {
   auto there = renderer();
   for (unsigned frame = 0; frame < 12; ++frame) {

@@ -175,6 +175,63 @@ TEST_F(Shadows, AGroundThatCastsBlocksLightFromBelowAndKeepsTheMapsOfOtherLights
   EXPECT_LT(casters.objects.radius, 0.51f);
 }
 
+// Floor and wall both support the scene; a sun that stands behind the wall alone passes over it.
+TEST_F(Shadows, OfTwoSupportsOnlyTheOneBeforeTheLightIsInItsWay) {
+  Scene scene;
+  add_ground(scene, lambertian(kWhite), true, 4);
+  add_mesh(scene, {{-4, 0, -4}, {4, 0, -4}, {4, 2, -4}, {-4, 2, -4}}, {}, {0, 1, 2, 0, 2, 3},
+           lambertian(kWhite));
+  const Vec3f centre(0, 0.8f, 0);
+  add_sphere(scene, centre, 0.5f, lambertian(kWhite));
+  const Vec3f to_light(0, std::sqrt(0.75f), -0.5f);
+  const render::Casters casters = render::find_casters(scene);
+  ASSERT_TRUE(casters.is_support[0] && casters.is_support[1]);
+  const SceneCamera camera = camera_at({0, 9, 3}, {0, 0, 0}, 0.8f);
+  const auto p = picture(scene, light_set({{to_light, kLux}}), camera, kWidth, kHeight);
+  int lit = 0, behind_ball = 0;
+  for_plane(p, camera, 0, [&](const Rgb& value, const Vec3f& point) {
+    if (point.cwiseAbs().maxCoeff() > 3.9f) return;
+    const Vec3f to_eye = (Vec3f(0, 9, 3) - point).normalized();
+    if (std::abs(miss(point, to_eye, centre)) < 0.55f) return;
+    const float from_ball = miss(point, to_light, centre);
+    const float up_at_wall = (point.z() + 4) / 0.5f * to_light.y();
+    if (up_at_wall < 2.1f)
+      return;  // maps reach as far as the objects: a support's shadow on another is not drawn there
+    if (from_ball < 0.45f) {
+      ++behind_ball;
+      EXPECT_EQ(value.maxCoeff(), 0) << point.transpose();
+    } else if (from_ball > 0.55f) {
+      ++lit;
+      expect_near(value, kWhite * kLux / kPiF * to_light.y(), 1e-3f);
+    }
+  });
+  EXPECT_GT(behind_ball, 20);
+  EXPECT_GT(lit, 2000);
+  EXPECT_GT(rgb(p, kWidth / 2, kHeight / 2 - 6)[0], 50);  // the ball itself
+}
+
+// Maps are compared with the plane of the triangle, not with what a normal map makes of it.
+TEST_F(Shadows, ANormalMapMakesNoShadowOnItsOwnSurface) {
+  Scene scene;
+  add_ground(scene, lambertian(kWhite));
+  Material bent = lambertian(kWhite);
+  bent.normal_texture.texture = 0;
+  add_box(scene, {-1, 0, -1}, {1, 0.5f, 1}, bent);
+  for (Vertex& vertex : scene.vertices) vertex.uv = {vertex.position.x(), vertex.position.z()};
+  render::TextureImage map;
+  map.width = map.height = 1;
+  map.rgba = {218, 128, 218, 255};  // 45° to one side
+  scene.textures.push_back(map);
+  const SceneCamera camera = camera_at({0, 5, 0}, {0, 0, 0}, 0.3f);
+  const auto p = picture(scene, light_set({{Vec3f(0, 1, 0.02f), kLux}}), camera, kWidth, kHeight, 1, 128);
+  float most = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) most = std::max(most, rgb(p, x, y)[0]);
+  EXPECT_NEAR(most, 0.5f * 1000 / kPiF * std::sqrt(0.5f), 3);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) EXPECT_GT(rgb(p, x, y)[0], 0.98f * most) << x << ", " << y;
+}
+
 TEST_F(Shadows, OfSimplifiedCastersAreThoseOfTheFullMeshes) {
   Scene scene;
   add_ground(scene, lambertian(kWhite));
