@@ -353,9 +353,11 @@ bool has_no_border(std::span<const Index> triangles) {
   next.sort();
   for (std::size_t a = 0; a + 1 < next.starts.size(); ++a)
     for (const Index b : next.of(a)) {
-      const auto there = std::ranges::equal_range(next.of(a), b);
-      const auto back = std::ranges::equal_range(next.of(b), static_cast<Index>(a));
-      if (there.size() != back.size()) return false;
+      const auto times = [](const auto& sorted, Index value) {
+        const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), value);
+        return last - first;
+      };
+      if (times(next.of(a), b) != times(next.of(b), static_cast<Index>(a))) return false;
     }
   return true;
 }
