@@ -44,6 +44,7 @@ std::string emission_fact(const Scene& scene) {
 
 std::string map_facts(bool nothing_casts, bool simplified) {
   constexpr float kCurvatureTexels = 0.1f;
+  // Depth: two steps of 16 bits. Cosine: below it the plane's slope is cut, where little light falls anyway.
   return std::string("#define HAS_SHADOWS ") + (nothing_casts ? "0" : "1") + "\n#define CASTER_SLACK " +
          std::to_string(kCurvatureTexels + (simplified ? kSimplifiedTexels : 0)) +
          "\n#define DEPTH_SLACK 0.00003\n#define LEAST_COSINE 0.05\n";
