@@ -23,10 +23,10 @@ inline constexpr int kMostPlacedLights = 512;
 // map's total a channel.
 //
 // A black map gives lights of no power that keep their places. A map of no more atoms than lights gives a light each and
-// the rest without power. Where the map has become another one (a cut), lights are placed anew; of 8 lights and fewer that is tried, at its cost in
-// time and memory, whenever the map's moments have changed by 5 %. Once lights have been
-// placed nothing is allocated; the first frame with light, a cut, a frame after a map of so few atoms, and such a map where
-// it is another than before, allocate and take the time of a first frame.
+// the rest without power. Where the map has become another one (a cut), lights are placed anew; of 8 lights and fewer
+// that is tried whenever the map's moments have changed by 5 %. Once lights have been placed nothing is allocated; the
+// first frame with light, a cut and such a trial, a frame after a map of so few atoms, and such a map where it is another
+// than before, allocate and take the time of a first frame.
 class BestLights {
  public:
   // count: 1 to kMostPlacedLights
