@@ -18,6 +18,7 @@ Result<Compositor> Compositor::create() {
 
 void Compositor::set_plate(const Plate& plate, float white) {
   white_ = white;
+  graded_ = plate.display_referred;
   GLint limit = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
   const int step = 1 + (std::max(plate.width, plate.height) - 1) / limit;
@@ -41,7 +42,8 @@ Status Compositor::resize(int width, int height) {
   height_ = height;
   for (Sum& sum : sums_) {
     sum.texture = gl::make_texture(GL_RGBA32F, width, height);
-    auto framebuffer = gl::make_framebuffer({sum.texture.id()}, 0);
+    sum.plate_share = gl::make_texture(GL_RGBA32F, width, height);
+    auto framebuffer = gl::make_framebuffer({sum.texture.id(), sum.plate_share.id()}, 0);
     if (!framebuffer) return framebuffer.error();
     sum.framebuffer = std::move(framebuffer).value();
   }
@@ -50,6 +52,7 @@ Status Compositor::resize(int width, int height) {
 
 void Compositor::add(GLuint shadowed, GLuint unshadowed, GLuint surface, float weight, bool start_sum) {
   const GLuint so_far = picture();
+  const GLuint share_so_far = sums_[current_].plate_share.id();
   current_ = 1 - current_;
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer());
   glViewport(0, 0, width_, height_);
@@ -64,6 +67,7 @@ void Compositor::add(GLuint shadowed, GLuint unshadowed, GLuint surface, float w
   texture("unshadowed_map", 2, unshadowed);
   texture("surface_map", 3, surface);
   texture("plate_map", 4, plate_.id());
+  texture("share_so_far", 5, share_so_far);
   glUniform1f(gl::uniform(program_, "white"), white_);
   glUniform1f(gl::uniform(program_, "weight"), weight);
   glUniform1i(gl::uniform(program_, "start_sum"), start_sum ? 1 : 0);

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "render/gl_objects.h"
 #include "render/plate.h"
+#include "render/tone_mapper.h"
 
 namespace lightwell::render {
 
@@ -23,16 +26,24 @@ class Compositor {
   void add(GLuint shadowed, GLuint unshadowed, GLuint surface, float weight, bool start_sum);
   // Alpha 1 everywhere.
   [[nodiscard]] GLuint picture() const { return sums_[current_].texture.id(); }
+  // Both; the picture is the first.
   [[nodiscard]] GLuint framebuffer() const { return sums_[current_].framebuffer.id(); }
+  // The plate where it is graded, for the display.
+  [[nodiscard]] std::optional<GradedPlate> graded_plate() const {
+    if (!graded_) return std::nullopt;
+    return GradedPlate{sums_[current_].plate_share.id(), white_};
+  }
 
  private:
   struct Sum {
     gl::Texture texture;
+    gl::Texture plate_share;
     gl::Framebuffer framebuffer;
   };
   int width_ = 0;
   int height_ = 0;
   float white_ = 1;
+  bool graded_ = false;
   gl::Program program_;
   gl::VertexArray no_vertices_;
   gl::Texture plate_;

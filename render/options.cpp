@@ -116,6 +116,12 @@ Parsed parse_options(int argc, const char* const* argv) {
       ->capture_default_str();
   app.add_option("--plate-white", options.plate_white_cd_m2, "radiance that the plate's value 1 stands for")
       ->check(numbers_above_0_to(1e9, "above 0 to 1e9 cd/m²"));
+  std::string plate_values;
+  app.add_option(
+         "--plate-values", plate_values,
+         "what they are: graded for a display, whose look stays (PNG and JPEG unless told), or radiance, "
+         "toned as the objects are (EXR unless told)")
+      ->check(CLI::IsMember({"graded", "radiance"}));
   std::string tracking;
   std::optional<double> focal_mm_per_unit;
   std::optional<double> sensor_height_mm;
@@ -183,6 +189,11 @@ Parsed parse_options(int argc, const char* const* argv) {
     return {std::nullopt, complain("--background '': must be none, environment or a picture's name")};
   if (options.plate_white_cd_m2 && options.plate.empty())
     return {std::nullopt, complain("--plate-white: there is no plate; --background names one")};
+  if (!plate_values.empty()) {
+    if (options.plate.empty())
+      return {std::nullopt, complain("--plate-values: there is no plate; --background names one")};
+    options.plate_graded = plate_values == "graded";
+  }
   for (const std::string& pattern : outputs) {
     const auto name = FrameName::parse(pattern);
     if (!name) return {std::nullopt, complain(name.error().message)};

@@ -41,6 +41,7 @@ struct Options {
   bool background_environment = false;
   std::string plate;  // picture or numbered sequence; empty: none
   std::optional<float> plate_white_cd_m2;
+  std::optional<bool> plate_graded;  // else as its format says
   std::optional<TrackingOptions> tracking;
   bool probe = false;  // grey and mirror ball in a corner
   Look look;

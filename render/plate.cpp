@@ -114,8 +114,9 @@ Result<Plate> read_plate(const std::filesystem::path& file) {
   return plate_from_bytes(*bytes, file.string());
 }
 
-Result<PlateSource> PlateSource::open(const std::string& pattern) {
+Result<PlateSource> PlateSource::open(const std::string& pattern, std::optional<bool> graded) {
   PlateSource source;
+  source.graded_ = graded;
   if (is_numbered_sequence(pattern)) {
     auto files = sequence_files(pattern);
     if (!files) return files.error();
@@ -133,6 +134,7 @@ Result<bool> PlateSource::update(int frame) {
   auto plate = read_plate(files_[static_cast<std::size_t>(wanted)]);
   if (!plate) return plate.error();
   plate_ = std::move(plate).value();
+  plate_.display_referred = graded_.value_or(plate_.display_referred);
   shown_ = wanted;
   return true;
 }

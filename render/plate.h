@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,11 +18,12 @@ struct Plate {
   int width = 0;
   int height = 0;
   std::vector<Rgb> pixels;        // [height][width], linear Rec. 709, finite, ≥ 0
-  bool display_referred = false;  // of 8 or 16 bit sRGB codes: 1 is white, which is no radiance
+  bool display_referred = false;  // graded: values are a display's light, 1 is its white; else radiance
   std::string remark;             // what was read as 0; empty: nothing
 };
 
-// OpenEXR (linear, as read_exr has it), PNG of 8 or 16 bits and JPEG (sRGB, made linear; what is transparent is black).
+// OpenEXR (linear, as read_exr has it; radiance), PNG of 8 or 16 bits and JPEG (sRGB, made linear; what is transparent
+// is black; graded).
 // bad_input: missing, truncated, another format, over 2^28 pixels.
 Result<Plate> read_plate(const std::filesystem::path& file);
 Result<Plate> plate_from_bytes(std::string_view bytes, const std::string& name_for_errors);
@@ -34,7 +36,8 @@ float linear_from_srgb(float code);
 class PlateSource {
  public:
   // bad_input: no file, a gap in the sequence
-  static Result<PlateSource> open(const std::string& pattern);
+  // graded: says what the files' formats do not
+  static Result<PlateSource> open(const std::string& pattern, std::optional<bool> graded = std::nullopt);
   // Reads the plate of a frame; true where it differs from the one before. bad_input: the file.
   Result<bool> update(int frame);
   [[nodiscard]] const Plate& plate() const { return plate_; }
@@ -42,6 +45,7 @@ class PlateSource {
 
  private:
   std::vector<std::filesystem::path> files_;
+  std::optional<bool> graded_;
   int shown_ = -1;
   Plate plate_;
 };

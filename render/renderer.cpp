@@ -344,6 +344,7 @@ void Renderer::tone_map(ToneMap operation, double dt_s) {
 
 void Renderer::tone_map(double dt_s) {
   const double start = now_ms();
+  if (compositor_) tone_mapper_.set_plate(compositor_->graded_plate());
   tone_mapper_.adapt(shown().texture, dt_s);
   tone_mapper_.draw(shown().texture);
   lap(start, times_.tonemap_ms);

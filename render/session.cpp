@@ -61,7 +61,8 @@ class Session {
         tracking_(tracking),
         budget_({options.target_fps, options.max_error}),
         look_(options.look),
-        show_probe_(options.probe) {}
+        show_probe_(options.probe),
+        plate_white_cd_m2_(options.plate_white_cd_m2) {}
 
   Status prepare() {
     if (Status s = check_driver(); !s) return s;
@@ -207,14 +208,25 @@ class Session {
 
   Status show_plate() {
     if (!plates_->plate().remark.empty()) say(plates_->plate().remark);
-    return renderer_->set_plate(plates_->plate(), options_.plate_white_cd_m2.value_or(1));
+    return renderer_->set_plate(plates_->plate(), plate_white_cd_m2_.value_or(1));
+  }
+
+  // A graded plate tells no radiance: unless told, it counts as exposed for the first light that has power.
+  bool meter_plate() {
+    if (plate_white_cd_m2_ || !plates_->plate().display_referred) return false;
+    const float white = white_floor_cd_m2(source_.lights());
+    if (!(white > 0)) return false;
+    plate_white_cd_m2_ = white;
+    say(plate_white_text(options_.plate, white));
+    return true;
   }
 
   Status render(const SceneCamera& camera) {
     if (plates_ != nullptr) {
       const auto another = plates_->update(frame_);
       if (!another) return another.error();
-      if (*another)
+      const bool metered = meter_plate();
+      if (*another || metered)
         if (Status s = show_plate(); !s) return s;
     }
     if (options_.background_environment && source_.environment_version() != shown_environment_) {
@@ -337,6 +349,7 @@ class Session {
   bool said_no_prediction_ = false;
   Look look_;
   bool show_probe_ = false;
+  std::optional<float> plate_white_cd_m2_;
   double fps_ = 0;
   double last_ms_ = 0;
   int frame_ = 0;
@@ -362,15 +375,13 @@ Status run_session(const Options& chosen, const std::atomic<bool>& stop) {
 
   std::optional<PlateSource> plates;
   if (!options.plate.empty()) {
-    auto opened = PlateSource::open(options.plate);
+    auto opened = PlateSource::open(options.plate, options.plate_graded);
     if (!opened) return opened.error();
     plates.emplace(std::move(opened).value());
     if (!options.size_given) {
       options.width = plates->plate().width;
       options.height = plates->plate().height;
     }
-    if (plates->plate().display_referred && !options.plate_white_cd_m2)
-      say(options.plate + ": its white counts as 1 cd/m²; --plate-white says otherwise");
   }
 
   std::optional<TrackingStream> tracking;

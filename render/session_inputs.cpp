@@ -34,6 +34,13 @@ Result<ChosenCamera> choose_camera(const Scene& scene, const Options& options) {
   return ChosenCamera{fitted_camera(scene), std::nullopt};
 }
 
+float white_floor_cd_m2(const LightSet& lights) {
+  double sum = luminance(lights.ambient);
+  for (const DirectionalLight& light : lights.lights)
+    sum += luminance(light.illuminance) * std::max(light.direction.y(), 0.0f) / kPi;
+  return static_cast<float>(sum);
+}
+
 std::vector<std::string> remarks_on(const Scene& scene, const ChosenCamera& camera, const LightSource& source,
                                     const Options& options) {
   std::vector<std::string> remarks;

@@ -25,6 +25,10 @@ Result<ChosenCamera> choose_camera(const Scene& scene, const Options& options);
 // Light from where the options say.
 Result<std::unique_ptr<LightSource>> open_lights(const Options& options);
 
+// Luminance of a horizontal Lambertian surface of albedo 1 under the lights: what a camera shows as white that is
+// exposed by an incident light meter.
+float white_floor_cd_m2(const LightSet& lights);
+
 // What of the scene and its light is shown otherwise than one may expect, a line each.
 std::vector<std::string> remarks_on(const Scene& scene, const ChosenCamera& camera, const LightSource& source,
                                     const Options& options);

@@ -39,4 +39,11 @@ std::vector<std::string> overlay_text(const ViewNumbers& n) {
   return lines;
 }
 
+std::string plate_white_text(const std::string& plate, float white_cd_m2) {
+  return plate +
+         text(
+             ": its white counts as %.3g cd/m², a white floor under this light; --plate-white says otherwise",
+             static_cast<double>(white_cd_m2));
+}
+
 }  // namespace lightwell::render

@@ -25,5 +25,6 @@ struct ViewNumbers {
 
 std::string title_text(const ViewNumbers& n);
 std::vector<std::string> overlay_text(const ViewNumbers& n);
+std::string plate_white_text(const std::string& plate, float white_cd_m2);
 
 }  // namespace lightwell::render

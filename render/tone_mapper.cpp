@@ -101,19 +101,23 @@ ToneMapper::Parameters ToneMapper::parameters() const {
   const auto& ev100 = look_.exposure_ev100;
   if (ev100) {
     p.middle_cd_m2 = metered_luminance_cd_m2(*ev100);
-    if (look_.operation == ToneMap::none) {
-      p.scale = 1 / saturating_luminance_cd_m2(*ev100);
-      return p;
-    }
-    p.scale = kMiddleGrey / p.middle_cd_m2;
+    p.scale = look_.operation == ToneMap::none ? 1 / saturating_luminance_cd_m2(*ev100)
+                                               : kMiddleGrey / p.middle_cd_m2;
     p.white = kMiddleGrey * std::exp2(kWhiteStops);
-    return p;
+  } else if (plate_) {
+    p.scale = 1 / static_cast<double>(plate_->white);
+    p.middle_cd_m2 = kMiddleGrey / p.scale;
+    if (adaptation_.adapted()) p.white = p.scale * adaptation_.white_cd_m2();
+  } else if (adaptation_.adapted()) {
+    p.middle_cd_m2 = adaptation_.average_cd_m2();
+    if (look_.operation == ToneMap::none) return p;
+    p.scale = kMiddleGrey / p.middle_cd_m2;
+    p.white = p.scale * adaptation_.white_cd_m2();
   }
-  if (!adaptation_.adapted()) return p;
-  p.middle_cd_m2 = adaptation_.average_cd_m2();
-  if (look_.operation == ToneMap::none) return p;
-  p.scale = kMiddleGrey / p.middle_cd_m2;
-  p.white = p.scale * adaptation_.white_cd_m2();
+  if (plate_) {
+    p.knee = kKnee;
+    p.white = std::max(p.white, 1.0);  // the operator must not brighten
+  }
   return p;
 }
 
@@ -141,7 +145,11 @@ void ToneMapper::draw_into(GLuint framebuffer, GLuint radiance, bool straight_al
   };
   set("reinhard", look_.operation == ToneMap::reinhard ? 1 : 0);
   set_float("scale", p.scale);
-  set_float("white_squared", std::max(p.white * p.white, 1e-12));
+  set_float("knee", p.knee);
+  set_float("white_squared", std::max(std::pow((p.white - p.knee) / (1 - p.knee), 2), 1e-12));
+  set("over_plate", plate_ ? 1 : 0);
+  set("plate_share", 3);
+  set_float("plate_white", plate_ ? static_cast<double>(plate_->white) : 1.0);
   set("straight_alpha", straight_alpha ? 1 : 0);
   set("display", static_cast<int>(look_.display));
   set("false_colour", look_.false_colour != FalseColour::none ? 1 : 0);
@@ -157,6 +165,7 @@ void ToneMapper::draw_into(GLuint framebuffer, GLuint radiance, bool straight_al
   set("picture_height", height_);
   gl::bind_texture(1, colours_.id());
   gl::bind_texture(2, legend_.id());
+  gl::bind_texture(3, plate_ ? plate_->share : 0);
   gl::bind_texture(0, radiance);
   glBindVertexArray(no_vertices_.id());
   glDrawArrays(GL_TRIANGLES, 0, 3);

@@ -1,12 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-// Linear radiance to the codes of a display. Reinhard et al. 2002, eq. 4, on luminance; without it only clamped; or
-// luminance as false colour, with a legend in the upper right corner.
+// Linear radiance to the codes of a display. Reinhard et al. 2002, eq. 4, on luminance above a knee; without it only
+// clamped; or luminance as false colour, with a legend in the upper right corner. A graded plate keeps its own values.
 in vec2 ndc;
 uniform sampler2D radiance_map;
 uniform int reinhard;
 uniform float scale;          // of radiance, before the operator
-uniform float white_squared;  // smallest scaled luminance that becomes white, squared
+uniform float knee;           // scaled luminance up to which the operator leaves all as it is
+uniform float white_squared;  // smallest scaled luminance that becomes white: (white - knee) / (1 - knee), squared
+uniform int over_plate;       // plate_share holds a graded plate
+uniform sampler2D plate_share;  // what of the picture the plate is, in display light; a: what objects cover
+uniform float plate_white;    // radiance that the picture has for the plate's 1
 uniform int straight_alpha;
 uniform int display;          // 0 sRGB, 1 Rec. 709, 2 linear
 uniform int false_colour;
@@ -47,12 +51,18 @@ void main() {
     color = vec4(c, value.a);
     return;
   }
-  if (reinhard != 0) {
-    float l = luminance * scale;
-    c *= scale * (1.0 + l / white_squared) / (1.0 + l);
-  } else {
-    c *= scale;
+  vec4 plate = vec4(0.0, 0.0, 0.0, 1.0);
+  if (over_plate != 0) {
+    plate = texelFetch(plate_share, at, 0);
+    c = max(c - plate.rgb * plate_white, 0.0) / max(plate.a, 1e-6);
+    luminance = dot(c, vec3(0.2126, 0.7152, 0.0722));
   }
-  c = clamp(c, 0.0, 1.0);
+  c *= scale;
+  float l = luminance * scale;
+  if (reinhard != 0 && l > knee) {
+    float above = (l - knee) / (1.0 - knee);
+    c *= (knee + (1.0 - knee) * above * (1.0 + above / white_squared) / (1.0 + above)) / l;
+  }
+  c = clamp(clamp(c, 0.0, 1.0) * plate.a + plate.rgb, 0.0, 1.0);
   color = vec4(display == 0 ? srgb(c) : display == 1 ? rec709(c) : c, value.a);
 }

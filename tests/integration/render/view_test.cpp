@@ -13,6 +13,7 @@
 #include "interface/light_set_io.h"
 #include "render/egl_context.h"
 #include "render/picture.h"
+#include "render/plate.h"
 #include "tests/integration/render/program.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_scene.h"
@@ -74,11 +75,43 @@ TEST_F(Viewing, FramesLieOverTheirPlatesInThePlatesSize) {
   }
 }
 
-TEST_F(Viewing, AnEightBitPlateSaysWhatItsWhiteCountsAs) {
-  ASSERT_TRUE(render::write_png(file("plate.png"), {8, 6, std::vector<std::uint8_t>(8 * 6 * 4, 255)}));
-  ChildProcess program = start({"--background", file("plate.png"), "--out", file("a.exr")});
+TEST_F(Viewing, AnEightBitPlateKeepsItsCodesAndSaysWhatItsWhiteCountsAs) {
+  std::vector<std::uint8_t> codes;
+  for (int i = 0; i < 80 * 60; ++i)
+    for (const int code : {i, 255 - i / 8, 3 * i, 255}) codes.push_back(static_cast<std::uint8_t>(code));
+  ASSERT_TRUE(render::write_png(file("plate.png"), {80, 60, codes}));
+  ChildProcess program =
+      start({"--background", file("plate.png"), "--out", file("a.exr"), "--out", file("a.png")});
   ASSERT_EQ(program.wait(), 0);
+  // A white floor under 1000 lx from (1, 2, 1): 1000 · (2 / √6) / π = 260 cd/m².
+  EXPECT_NE(program.stderr_text().find("260 cd/m²"), std::string::npos) << program.stderr_text();
   EXPECT_NE(program.stderr_text().find("--plate-white"), std::string::npos) << program.stderr_text();
+  const LatLongImage radiance = exr("a.exr");
+  const auto before = render::read_plate(file("plate.png"));
+  const auto after = render::read_plate(file("a.png"));
+  ASSERT_TRUE(before.ok() && after.ok());
+  // The first rows are far from every object.
+  for (std::size_t i = 0; i < 80 * 5; ++i) {
+    ASSERT_TRUE((after->pixels[i] == before->pixels[i]).all()) << i;
+    ASSERT_NEAR(radiance.pixels[i][0], 259.9f * before->pixels[i][0], 0.05f) << i;
+  }
+}
+
+TEST_F(Viewing, AnExrPlateIsRadianceUnlessItIsToldToBeGraded) {
+  const std::vector<float> rgba(std::size_t{4} * 40 * 30, 0.25f);
+  ASSERT_TRUE(render::write_exr(file("plate.exr"), {40, 30, rgba}));
+  for (const std::string values : {"graded", "radiance"}) {
+    ChildProcess program = start({"--background", file("plate.exr"), "--plate-values", values,
+                                  "--plate-white", "100", "--out", file(values + ".png"), "--exposure", "6"});
+    ASSERT_EQ(program.wait(), 0) << program.stderr_text();
+    const auto picture = render::read_plate(file(values + ".png"));
+    ASSERT_TRUE(picture.ok());
+    const float first = picture->pixels[0][0];
+    if (values == "graded") EXPECT_NEAR(first, 0.25f, 0.004f);  // half a code there
+    // EV 6: 8 cd/m² is middle grey, so 25 are 0.5625, and Reinhard's equation 4 with white at 5.76 follows.
+    else
+      EXPECT_NEAR(first, 0.5625f * (1 + 0.5625f / 33.18f) / 1.5625f, 0.004f);
+  }
 }
 
 TEST_F(Viewing, ATrackerMovesTheCameraWhichStaysWhenTheStreamStops) {
@@ -125,6 +158,8 @@ TEST_F(Viewing, WrongOptionsAreRefusedInOneLine) {
   expect_refused({"--background", file("none.png")}, 3, "none.png");
   expect_refused({"--background", lights_}, 3, "lights.json");
   expect_refused({"--plate-white", "2"}, 2, "--plate-white");
+  expect_refused({"--plate-values", "graded"}, 2, "--plate-values");
+  expect_refused({"--background", "a.png", "--plate-values", "log"}, 2, "--plate-values");
   expect_refused({"--tracking", "freed"}, 2, "--tracking");
   expect_refused({"--tracking", "opentrackio:203.0.113.7:6301"}, 1,
                  "203.0.113.7");  // nobody's address (RFC 5737)
