@@ -40,25 +40,27 @@ Result<CutoutCasters> CutoutCasters::create(const Scene& scene, const Casters& c
 
 void CutoutCasters::draw(const ShadowAtlas& atlas) const {
   if (draws_.empty() || atlas.drawn() == 0) return;
-  atlas.bind();
   glUseProgram(program_.id());
   glUniform1i(gl::uniform(program_, "supports"), 0);
   glUniform1i(gl::uniform(program_, "base_color_map"), 0);
   glBindVertexArray(vertex_array_.id());
   glBindBuffer(GL_ARRAY_BUFFER, atlas.instances());
-  const std::size_t offsets[] = {offsetof(MapRows, u), offsetof(MapRows, v), offsetof(MapRows, w)};
-  for (GLuint row = 0; row < 3; ++row)
-    glVertexAttribPointer(row + 1, 4, GL_FLOAT, GL_FALSE, sizeof(MapRows),
-                          reinterpret_cast<const void*>(offsets[row]));
   glDisable(GL_CULL_FACE);
-  for (const Draw& draw : draws_) {
-    gl::bind_texture(0, draw.texture);
-    glUniform3fv(gl::uniform(program_, "base_color_uv"), 2, draw.use.from_uv.data());
-    glUniform1f(gl::uniform(program_, "alpha"), draw.alpha);
-    glUniform1f(gl::uniform(program_, "alpha_cutoff"), draw.alpha_cutoff);
-    const auto offset = static_cast<std::uintptr_t>(draw.primitive.first_index) * sizeof(std::uint32_t);
-    glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(draw.primitive.index_count), GL_UNSIGNED_INT,
-                            reinterpret_cast<const void*>(offset), static_cast<GLsizei>(atlas.drawn()));
+  for (const ShadowAtlas::Block& maps : atlas.drawn_on()) {
+    atlas.bind(maps.page);
+    const std::size_t offsets[] = {offsetof(MapRows, u), offsetof(MapRows, v), offsetof(MapRows, w)};
+    for (GLuint row = 0; row < 3; ++row)
+      glVertexAttribPointer(row + 1, 4, GL_FLOAT, GL_FALSE, sizeof(MapRows),
+                            reinterpret_cast<const void*>(maps.first * sizeof(MapRows) + offsets[row]));
+    for (const Draw& draw : draws_) {
+      gl::bind_texture(0, draw.texture);
+      glUniform3fv(gl::uniform(program_, "base_color_uv"), 2, draw.use.from_uv.data());
+      glUniform1f(gl::uniform(program_, "alpha"), draw.alpha);
+      glUniform1f(gl::uniform(program_, "alpha_cutoff"), draw.alpha_cutoff);
+      const auto offset = static_cast<std::uintptr_t>(draw.primitive.first_index) * sizeof(std::uint32_t);
+      glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(draw.primitive.index_count), GL_UNSIGNED_INT,
+                              reinterpret_cast<const void*>(offset), static_cast<GLsizei>(maps.count));
+    }
   }
 }
 

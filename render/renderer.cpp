@@ -231,34 +231,54 @@ Status Renderer::render_samples(std::span<LightRow> all, const LightSet& lights,
                                 int first_sample, int end_sample, double environment_turn_rad) {
   const int samples = end_sample - first_sample;
   const float weight = 1 / static_cast<float>(samples);
-  const auto capacity = static_cast<std::size_t>(atlas_.capacity());
   double time = now_ms();
   bool start_sum = true;
   // At least once, so that ambient light and background are drawn without any light.
-  for (std::size_t first = 0; first == 0 || first < all.size(); first += capacity) {
-    const auto block = all.subspan(first, std::min(capacity, all.size() - first));
-    if (!nothing_casts_ && shadows_ && !block.empty()) {
-      if (Status s = atlas_.draw(block, casters_, fine_casters_); !s) return s;
-      cutouts_.draw(atlas_);
-      shadow_maps_drawn_ += atlas_.drawn();
-    }
-    glBindBuffer(GL_UNIFORM_BUFFER, light_block_.id());
-    glBufferSubData(GL_UNIFORM_BUFFER, 0, static_cast<GLsizeiptr>(block.size_bytes()), block.data());
-    glBindBufferBase(GL_UNIFORM_BUFFER, 0, light_block_.id());
-    time = lap(time, times_.shadow_ms);
-    for (int sample = first_sample; sample < end_sample; ++sample) {
-      const View view =
-          make_view(camera, options_.width, options_.height, sample_offset(sample, options_.samples));
-      // With one sample a pixel the G-buffer of the first block serves all blocks.
-      if (first == 0 || samples > 1) gbuffer_.draw(view);
-      time = lap(time, times_.gbuffer_ms);
-      shade(view, static_cast<int>(block.size()), lights, first == 0, start_sum, weight,
-            environment_turn_rad);
-      start_sum = false;
-      time = lap(time, times_.shading_ms);
+  for (std::size_t first = 0; first == 0 || first < all.size(); first += atlas_.capacity()) {
+    const auto turn = all.subspan(first, std::min(atlas_.capacity(), all.size() - first));
+    const auto blocks = blocks_of(turn);
+    if (!blocks) return blocks.error();
+    for (const ShadowAtlas::Block& block : *blocks) {
+      const auto rows = turn.subspan(block.first, block.count);
+      const bool first_block = first == 0 && block.first == 0;
+      glBindBuffer(GL_UNIFORM_BUFFER, light_block_.id());
+      glBufferSubData(GL_UNIFORM_BUFFER, 0, static_cast<GLsizeiptr>(rows.size_bytes()), rows.data());
+      glBindBufferBase(GL_UNIFORM_BUFFER, 0, light_block_.id());
+      shadow_page_ = block.page;
+      time = lap(time, times_.shadow_ms);
+      for (int sample = first_sample; sample < end_sample; ++sample) {
+        const View view =
+            make_view(camera, options_.width, options_.height, sample_offset(sample, options_.samples));
+        // With one sample a pixel the G-buffer of the first block serves all blocks.
+        if (first_block || samples > 1) gbuffer_.draw(view);
+        time = lap(time, times_.gbuffer_ms);
+        shade(view, static_cast<int>(block.count), lights, first_block, start_sum, weight,
+              environment_turn_rad);
+        start_sum = false;
+        time = lap(time, times_.shading_ms);
+      }
     }
   }
   return {};
+}
+
+// Rows that are shaded at once, with their shadow maps drawn; one block of none where there are none.
+Result<std::vector<ShadowAtlas::Block>> Renderer::blocks_of(std::span<LightRow> rows) {
+  std::vector<ShadowAtlas::Block> blocks;
+  if (!nothing_casts_ && shadows_ && !rows.empty()) {
+    auto drawn = atlas_.draw(rows, casters_, fine_casters_);
+    if (!drawn) return drawn.error();
+    cutouts_.draw(atlas_);
+    shadow_maps_drawn_ += atlas_.drawn();
+    return drawn;
+  }
+  std::size_t first = 0;
+  do {
+    const auto count = std::min<std::size_t>(kMaxLightsPerBlock, rows.size() - first);
+    blocks.push_back({0, first, count});
+    first += count;
+  } while (first < rows.size());
+  return blocks;
 }
 
 void Renderer::shade(const View& view, int light_count, const LightSet& lights, bool first_block,
@@ -300,7 +320,7 @@ void Renderer::shade_surfaces(const gl::Program& program, Sums& sums, const View
   surfaces.set_texture("position_material_map", 1, gbuffer_.position_material());
   surfaces.set_texture("surface_map", 2, gbuffer_.surface());
   surfaces.set_texture("materials", 3, gbuffer_.materials());
-  surfaces.set_texture("shadow_maps", 4, atlas_.texture());
+  surfaces.set_texture("shadow_maps", 4, atlas_.texture(shadow_page_));
   surfaces.set_texture("emission_map", 5, gbuffer_.emission());
   surfaces.set("atlas_side", static_cast<float>(atlas_.side()));
   surfaces.set("light_count", light_count);

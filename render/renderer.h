@@ -39,8 +39,8 @@ struct PassTimes {
 };
 
 // Deferred rendering of a scene under directional lights, all of them with shadow maps. Works in the context
-// that is current when it is created. Lights beyond what one uniform block or one atlas holds go in further
-// passes: their number is not limited.
+// that is current when it is created. Lights beyond what one uniform block or one page of maps holds go in
+// further passes: their number is not limited.
 class Renderer {
  public:
   // bad_input: a texture too large for the driver; failed: what the driver cannot do.
@@ -107,6 +107,7 @@ class Renderer {
   Status make_unshadowed();
   Status render_samples(std::span<LightRow> rows, const LightSet& lights, const SceneCamera& camera,
                         int first_sample, int end_sample, double environment_turn_rad);
+  Result<std::vector<ShadowAtlas::Block>> blocks_of(std::span<LightRow> rows);
   // Adds the block of lights and, with the first of a sample, what does not depend on them.
   void shade(const View& view, int light_count, const LightSet& lights, bool first_block, bool start_sum,
              float weight, double environment_turn_rad);
@@ -118,6 +119,7 @@ class Renderer {
   RendererOptions options_;
   GBuffer gbuffer_;
   ShadowAtlas atlas_;
+  int shadow_page_ = 0;  // of the block that is shaded
   CutoutCasters cutouts_;
   ToneMapper tone_mapper_;
   Casters casters_;

@@ -7,12 +7,9 @@
 
 #include "render/caster_buffers.h"
 #include "render/light_rows.h"
-#include "render/tile_allocator.h"
+#include "render/shadow_tiles.h"
 
 namespace lightwell::render {
-
-// Times map_size: the side of the strongest lights' maps.
-inline constexpr int kLargestMap = 4;
 
 struct ShadowAtlasOptions {
   int map_size = 256;  // texels a side of a light's map, on average
@@ -20,7 +17,7 @@ struct ShadowAtlasOptions {
       true;  // strong lights have larger maps, weak ones smaller, of as many texels together
 };
 
-// Shadow maps of many lights as tiles of one 16 bit depth texture. A map is drawn anew when its light came to another
+// Shadow maps of many lights as tiles of 16 bit depth textures, the pages. A map is drawn anew when its light came to another
 // place by more than kMovedTexels, when a caster moved, or when its light is to have many more or fewer texels.
 class ShadowAtlas {
  public:
@@ -30,59 +27,64 @@ class ShadowAtlas {
 
   // True where some lights' maps are larger than map_size.
   static bool has_large_maps(const ShadowAtlasOptions& options);
-  // Largest side of an atlas on this driver: 4096, which small boards have, or what the driver allows.
+  // Largest side of a page on this driver: 4096, which small boards have, or what the driver allows.
   static int side_limit();
-  // Lights whose maps the atlas holds at once.
-  [[nodiscard]] int capacity() const;
-  [[nodiscard]] int map_size() const { return options_.map_size; }
-  [[nodiscard]] GLuint texture() const { return texture_.id(); }
-  [[nodiscard]] int side() const { return allocator_.side() * unit_; }  // texels
+  // Lights whose maps are held at once.
+  [[nodiscard]] std::size_t capacity() const { return tiles_.capacity(); }
+  // 0 before anything was drawn.
+  [[nodiscard]] GLuint texture(int page) const {
+    return pages_.empty() ? 0 : pages_[static_cast<std::size_t>(page)].texture.id();
+  }
+  [[nodiscard]] int side() const { return tiles_.pages().side() * tiles_.unit(); }  // of every page, texels
   [[nodiscard]] bool empty() const { return coarse_.empty(); }
 
   // Follows casters that moved; all maps are drawn anew.
   void move(const Casters& coarse, const Casters& fine);
-  // Gives each row, at most capacity(), its map, and draws what is not there yet. The casters are those it was made of. A
-  // light that moved so little that its map stands takes the map's direction.
-  Status draw(std::span<LightRow> rows, const Casters& coarse, const Casters& fine);
-  [[nodiscard]] int largest() const;  // side of the last draw()'s largest map, texels
-  // Maps drawn by the last draw(), and their MapRows into the atlas's clip space: for what else is to stand in them.
-  [[nodiscard]] std::size_t drawn() const { return drawn_; }
+  // Lights that stand together in the rows, their maps on one page, as many as a block of uniforms holds at most.
+  struct Block {
+    int page = 0;
+    std::size_t first = 0;
+    std::size_t count = 0;
+  };
+  // Gives each row, at most capacity(), its map, draws what is not there yet, and brings the rows into blocks. The casters
+  // are those it was made of. A light that moved so little that its map stands takes the map's direction.
+  Result<std::vector<Block>> draw(std::span<LightRow> rows, const Casters& coarse, const Casters& fine);
+  [[nodiscard]] int largest() const;                          // side of the last draw()'s largest map, texels
+  [[nodiscard]] std::size_t drawn() const { return drawn_; }  // maps, by the last draw()
+  // Where the last draw() drew, and the maps' MapRows into the page's clip space: for what else is to stand in them.
+  [[nodiscard]] std::span<const Block> drawn_on() const { return drawn_on_; }
   [[nodiscard]] GLuint instances() const { return instances_.id(); }
-  // Makes the whole atlas the place to draw to.
-  void bind() const;
+  // Makes the whole page the place to draw to.
+  void bind(int page) const;
 
  private:
-  struct Tile {
-    LightRow row{};  // as it was drawn
-    int side = 0;    // units
-    int wished = 0;  // its share
-    TileAllocator::Corner at{0, 0};
-    bool stale = true;
+  struct Page {
+    gl::Texture texture;
+    gl::Framebuffer framebuffer;
   };
 
-  [[nodiscard]] std::vector<int> sides_of(std::span<const LightRow> rows) const;  // units
-  void match(std::span<const LightRow> rows, std::vector<Tile>& tiles);
-  Status place(std::vector<Tile>& tiles);
-  Status resize(int side_units);
-  [[nodiscard]] bool is_large(const Tile& tile) const { return tile.side * unit_ > options_.map_size; }
+  Status make_pages();
+  [[nodiscard]] bool is_large(const ShadowTile& tile) const {
+    return tile.side * tiles_.unit() > options_.map_size;
+  }
   void draw_stale(const Casters& coarse, const Casters& fine);
-  void clear(std::span<const Tile* const> tiles) const;
-  void upload(std::span<const Tile* const> tiles, const Casters& casters);
-  void draw_tiles(std::span<const Tile* const> tiles, std::size_t first, const CasterBuffers& buffers) const;
+  void draw_page(std::span<const ShadowTile* const> stale, const Block& block);
+  void clear(std::span<const ShadowTile* const> tiles) const;
+  void scissor(const ShadowTile& tile) const;
+  void upload(std::span<const ShadowTile* const> tiles, const Casters& casters);
+  void draw_tiles(std::span<const ShadowTile* const> tiles, std::size_t first,
+                  const CasterBuffers& buffers) const;
+  [[nodiscard]] std::vector<Block> place_rows(std::span<LightRow> rows);
 
   ShadowAtlasOptions options_;
-  int unit_ = 64;  // texels; tiles are unit · 2ᵏ
-  TileAllocator allocator_;
-  std::vector<Tile> tiles_;  // a row each
+  ShadowTiles tiles_;
+  std::vector<Page> pages_;
+  int pages_side_ = 0;  // texels
   std::size_t drawn_ = 0;
+  std::vector<Block> drawn_on_;
   CasterBuffers coarse_, fine_;
   gl::Program program_;
   gl::Buffer instances_;
-  gl::Texture texture_;
-  gl::Framebuffer framebuffer_;
 };
-
-// A light may come so far from where its map was drawn, at the edge of what casts, before it is drawn anew.
-inline constexpr float kMovedTexels = 0.25f;
 
 }  // namespace lightwell::render

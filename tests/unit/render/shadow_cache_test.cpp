@@ -123,6 +123,42 @@ TEST_F(ShadowCache, InAFullAtlasStrongLightsKeepTheirTexels) {
   }
 }
 
+// 64 maps of 512² fill a page of 4096².
+TEST_F(ShadowCache, LightsOfManyPagesStandAndLightAsFewAtATime) {
+  render::RendererOptions options;
+  options.width = 160;
+  options.height = 120;
+  options.shadow_size = 512;
+  auto made = render::Renderer::create(scene_, options);
+  ASSERT_TRUE(made.ok());
+  const LightSet all = some_lights(5, 150);
+  ASSERT_TRUE(made->render(all, camera_).ok());
+  EXPECT_EQ(made->shadow_maps_drawn(), 150u);
+  ASSERT_TRUE(made->render(all, camera_).ok());
+  EXPECT_EQ(made->shadow_maps_drawn(), 0u);
+  const auto together = made->radiance();
+
+  std::vector<float> sum(together.rgba.size());
+  for (const std::size_t first : {0u, 50u, 100u}) {
+    LightSet part = all;
+    part.lights.assign(all.lights.begin() + static_cast<std::ptrdiff_t>(first),
+                       all.lights.begin() + static_cast<std::ptrdiff_t>(first) + 50);
+    auto few = render::Renderer::create(scene_, options);
+    ASSERT_TRUE(few.ok());
+    ASSERT_TRUE(few->render(part, camera_).ok());
+    const auto picture = few->radiance();
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += i % 4 == 3 ? 0 : picture.rgba[i];
+  }
+  double difference = 0, of = 0;
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    if (i % 4 == 3) continue;
+    difference += std::pow(static_cast<double>(sum[i] - together.rgba[i]), 2);
+    of += std::pow(static_cast<double>(sum[i]), 2);
+  }
+  // Sides may be a step off: shadows' edges, a texel wide.
+  EXPECT_LE(std::sqrt(difference / of), 0.01);
+}
+
 TEST_F(ShadowCache, AnyHistoryGivesThePictureOfAFirstFrame) {
   auto there = renderer();
   for (unsigned frame = 0; frame < 12; ++frame) {
