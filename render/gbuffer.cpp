@@ -167,7 +167,7 @@ Status GBuffer::resize(int width, int height) {
   depth_ = gl::make_texture(GL_DEPTH_COMPONENT24, width, height);
   std::vector<GLuint> colour = {position_material_.id(), surface_.id()};
   if (emits_) {
-    emission_ = gl::make_texture(GL_RGBA16F, width, height);
+    emission_ = gl::make_texture(GL_RGBA32F, width, height);  // halves end at 65504 cd/m²
     colour.push_back(emission_.id());
   }
   auto framebuffer = gl::make_framebuffer(colour, depth_.id());

@@ -101,6 +101,6 @@ void main() {
 #if HAS_DETAIL
   light *= glow;
 #endif
-  emitted = vec4(min(light, 65504.0), 0.0);  // the most a half holds
+  emitted = vec4(light, 0.0);
 #endif
 }
