@@ -13,6 +13,8 @@ using nlohmann::json;
 constexpr std::size_t kHeader = 16;
 constexpr std::size_t kLongestSample = std::size_t{1} << 20;
 constexpr std::uint8_t kJson = 1;
+constexpr std::uint8_t kCbor = 2;
+constexpr int kDeepest = 32;  // of CBOR, whose reader recurs; samples need six
 
 Error bad(const std::string& what) {
   return {ErrorKind::bad_input, "OpenTrackIO: " + what};
@@ -130,9 +132,39 @@ Result<Sample> read_sample(const json& root) {
   return sample;
 }
 
-Result<Sample> decode(const std::string& payload) {
-  const json root = json::parse(payload, nullptr, false);
-  if (root.is_discarded()) return bad("not JSON");
+// Stops a reader at what is nested too deep, and keeps nothing.
+class DepthLimit final : public nlohmann::json_sax<json> {
+ public:
+  bool null() override { return true; }
+  bool boolean(bool /*value*/) override { return true; }
+  bool number_integer(number_integer_t /*value*/) override { return true; }
+  bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
+  bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return true; }
+  bool string(string_t& /*value*/) override { return true; }
+  bool binary(binary_t& /*value*/) override { return true; }
+  bool key(string_t& /*value*/) override { return true; }
+  bool start_object(std::size_t /*size*/) override { return ++depth_ <= kDeepest; }
+  bool start_array(std::size_t /*size*/) override { return ++depth_ <= kDeepest; }
+  bool end_object() override { return depth_-- > 0; }
+  bool end_array() override { return depth_-- > 0; }
+  bool parse_error(std::size_t /*at*/, const std::string& /*token*/,
+                   const nlohmann::detail::exception& /*why*/) override {
+    return false;
+  }
+
+ private:
+  int depth_ = 0;
+};
+
+json parse_cbor(const std::string& payload) {
+  DepthLimit limit;
+  if (!json::sax_parse(payload, &limit, json::input_format_t::cbor)) return json(json::value_t::discarded);
+  return json::from_cbor(payload, true, false);
+}
+
+Result<Sample> decode(const std::string& payload, std::uint8_t encoding) {
+  const json root = encoding == kCbor ? parse_cbor(payload) : json::parse(payload, nullptr, false);
+  if (root.is_discarded()) return bad(encoding == kCbor ? "not CBOR" : "not JSON");
   return read_sample(root);
 }
 
@@ -157,35 +189,33 @@ Result<std::optional<TrackedCamera>> OpenTrackIoReader::take(std::span<const std
   const std::string text(datagram.begin(), datagram.end());
   if (text.starts_with('{')) {
     payload_ = text;
+    encoding_ = kJson;
   } else {
     if (datagram.size() < kHeader || !text.starts_with("OTrk")) return fail("no OTrk header");
     const std::size_t length = big_endian(datagram.subspan(12, 2)) & 0x7FFF;
     if (datagram.size() != kHeader + length) return fail("truncated datagram");
     const std::uint16_t sum = fletcher16(datagram.subspan(kHeader), fletcher16(datagram.first(14)));
     if (sum != big_endian(datagram.subspan(14, 2))) return fail("wrong checksum");
-    if (datagram[5] != kJson)
-      return fail("encoding " + std::to_string(datagram[5]) + ", only 1 (JSON) is read");
+    const std::uint8_t encoding = datagram[5];
+    if (encoding != kJson && encoding != kCbor)
+      return fail("encoding " + std::to_string(encoding) + ", only 1 (JSON) and 2 (CBOR) are read");
     const std::size_t offset = big_endian(datagram.subspan(8, 4));
     if (offset == 0) payload_.clear();
     if (offset != payload_.size()) return fail("a segment is missing");
+    if (offset > 0 && encoding != encoding_) return fail("segments of two encodings");
+    encoding_ = encoding;
     if (payload_.size() + length > kLongestSample) return fail("a sample of more than 1 MiB");
     payload_.append(text, kHeader);
     const bool last = (datagram[12] & 0x80) != 0;
     if (!last) return std::optional<TrackedCamera>();
   }
-  auto sample = decode(payload_);
+  auto sample = decode(payload_, encoding_);
   payload_.clear();
   if (!sample) return sample.error();
   if (sample->camera.sensor_height_mm) sensor_height_mm_ = sample->camera.sensor_height_mm;
   if (!sample->has_pose) return std::optional<TrackedCamera>();
   sample->camera.sensor_height_mm = sensor_height_mm_;
   return std::optional<TrackedCamera>(sample->camera);
-}
-
-Result<std::optional<TrackedCamera>> parse_opentrackio_json(const std::string& text) {
-  const auto sample = decode(text);
-  if (!sample) return sample.error();
-  return sample->has_pose ? std::optional<TrackedCamera>(sample->camera) : std::nullopt;
 }
 
 }  // namespace lightwell::render

@@ -218,6 +218,9 @@ void tracking(const std::filesystem::path& folder) {
           R"({"static":{"camera":{"activeSensorPhysicalDimensions":{"width":36.0,"height":24.0}}},)"
           R"("lens":{"pinholeFocalLength":24.0},"transforms":[{"id":"Camera","translation":{"x":0,"y":2,"z":1.5},)"
           R"("rotation":{"pan":0,"tilt":45,"roll":0},"scale":{"x":1,"y":1,"z":1}}]})");
+  write(folder / "opentrackio.cbor",
+        std::string(1, '\x02') + "\xBF\x6Atransforms\x81\xA1\x6Btranslation\xA3\x61x\xF9\x3E" +
+            std::string(1, '\0') + "\x61y\x21\x61z\xFA\x3E\x80" + std::string(2, '\0') + "\xFF");
 }
 
 }  // namespace

@@ -51,13 +51,13 @@ void take(OpenTrackIoReader& reader, const std::vector<std::uint8_t>& datagram) 
 }
 
 // The bytes as a payload, in this many segments.
-void segments(std::span<const std::uint8_t> payload, std::size_t count) {
+void segments(std::span<const std::uint8_t> payload, std::size_t count, std::uint8_t encoding) {
   OpenTrackIoReader reader;
   const std::size_t step = std::max<std::size_t>(payload.size() / count, 1);
   for (std::size_t at = 0; at < payload.size(); at += step) {
     const auto part = payload.subspan(at, std::min({step, payload.size() - at, std::size_t{0x7FFF}}));
     const bool last = at + step >= payload.size();
-    std::vector<std::uint8_t> bytes = {'O', 'T', 'r', 'k', 0, 1, 0, 0};
+    std::vector<std::uint8_t> bytes = {'O', 'T', 'r', 'k', 0, encoding, 0, 0};
     for (const int shift : {24, 16, 8, 0}) bytes.push_back(static_cast<std::uint8_t>(at >> shift & 255));
     const std::size_t length = part.size() | (last ? 0x8000u : 0u);
     bytes.push_back(static_cast<std::uint8_t>(length >> 8));
@@ -78,6 +78,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   freed(bytes);
   OpenTrackIoReader reader;
   take(reader, bytes);
-  segments(bytes, 1 + data[0] % 4u);
+  for (const std::uint8_t encoding : {std::uint8_t{1}, std::uint8_t{2}})
+    segments(bytes, 1 + data[0] % 4u, encoding);
   return 0;
 }

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "render/freed_packet.h"
 #include "render/opentrackio_packet.h"
@@ -179,6 +180,7 @@ TEST(OpenTrackIo, AMalformedDatagramIsRefusedAndTheNextIsRead) {
     wrong.back()[at] ^= 0x11;
   }
   wrong.push_back(datagram(kSample, 0, true, 2));
+  wrong.push_back(datagram(kSample, 0, true, 3));
   for (const char* text : {"",
                            "{",
                            "[]",
@@ -208,6 +210,66 @@ TEST(OpenTrackIo, AMalformedDatagramIsRefusedAndTheNextIsRead) {
   }
   expect_sample(reader.take(good));
   EXPECT_FALSE(reader.take(datagram(R"({"lens":{}})"))->has_value()) << "no pose, and nothing wrong";
+}
+
+std::string cbor(const char* sample) {
+  std::string bytes;
+  nlohmann::json::to_cbor(nlohmann::json::parse(sample), bytes);
+  return bytes;
+}
+
+TEST(OpenTrackIo, CborSaysWhatJsonSays) {
+  const std::string sample = cbor(kSample);
+  OpenTrackIoReader reader;
+  expect_sample(reader.take(datagram(sample, 0, true, 2)));
+  EXPECT_FALSE(reader.take(datagram(sample.substr(0, 70), 0, false, 2))->has_value());
+  expect_sample(reader.take(datagram(sample.substr(70), 70, true, 2)));
+  // By hand (RFC 8949): a map of no given length with an array of one map, translation {x: half 1.5, y: −2,
+  // z: float 0.25}.
+  const std::string by_hand = "\xBF\x6Atransforms\x81\xA1\x6Btranslation\xA3\x61x\xF9\x3E" +
+                              std::string("\x00", 1) + "\x61y\x21\x61z\xFA\x3E\x80" + std::string(2, '\0') +
+                              "\xFF";
+  const auto taken = reader.take(datagram(by_hand, 0, true, 2));
+  ASSERT_TRUE(taken.ok()) << taken.error().message;
+  EXPECT_EQ((*taken)->position_m, Vec3d(1.5, -2, 0.25));
+}
+
+TEST(OpenTrackIo, MalformedCborIsRefusedAndTheNextIsRead) {
+  const std::string good = cbor(kSample);
+  std::vector<std::string> wrong;
+  for (std::size_t length = 0; length < good.size(); length += 7) wrong.push_back(good.substr(0, length));
+  wrong.push_back(good + good);
+  wrong.push_back(good + "x");
+  wrong.push_back(kSample);
+  wrong.push_back("\xFF");
+  wrong.push_back("\xD9\xD9\xF7" + good);                         // a tag, which OpenTrackIO has none of
+  wrong.push_back("\x1C");                                        // reserved
+  wrong.push_back(std::string("\x5B") + std::string(8, '\x7F'));  // bytes, 2^63 of them
+  wrong.push_back(std::string("\x9B") + std::string(8, '\xFF'));  // an array of 2^64 − 1
+  wrong.push_back(std::string("\xBB") + std::string(8, '\xFF'));  // a map of as many
+  wrong.push_back(std::string(30000, '\x81'));                    // arrays in arrays
+  wrong.push_back(std::string(30000, '\xBF'));
+  wrong.push_back(std::string(40, '\x81') + "\x01");
+  wrong.push_back(cbor("[]"));
+  wrong.push_back(cbor("7"));
+  wrong.push_back(std::string("\xA1\x01\x02"));  // a key that is no text
+  // pinholeFocalLength NaN, infinite, bytes.
+  for (const std::string& value :
+       {std::string("\xF9\x7E\x00", 3), std::string("\xF9\x7C\x00", 3), std::string("\x41\x35")})
+    wrong.push_back("\xA1\x64lens\xA1\x72pinholeFocalLength" + value);
+  OpenTrackIoReader reader;
+  for (const std::string& payload : wrong) {
+    const auto taken = reader.take(datagram(payload, 0, true, 2));
+    EXPECT_FALSE(taken.ok()) << payload.substr(0, 60);
+    if (taken.ok()) continue;
+    EXPECT_EQ(taken.error().kind, ErrorKind::bad_input);
+    EXPECT_LT(taken.error().message.size(), 200u);
+  }
+  EXPECT_FALSE(reader.take(datagram(good.substr(0, 70), 0, false, 2))->has_value());
+  const auto mixed = reader.take(datagram(good.substr(70), 70, true, 1));
+  ASSERT_FALSE(mixed.ok());
+  EXPECT_NE(mixed.error().message.find("two encodings"), std::string::npos) << mixed.error().message;
+  expect_sample(reader.take(datagram(good, 0, true, 2)));
 }
 
 TEST(Tracking, OptionsNameProtocolAndAddress) {
