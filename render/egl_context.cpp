@@ -7,6 +7,8 @@
 
 #include <utility>
 
+#include "render/egl_es31.h"
+
 namespace lightwell::render {
 namespace {
 
@@ -42,9 +44,7 @@ Result<EglContext> EglContext::create() {
   if (display == EGL_NO_DISPLAY)
     return Error{ErrorKind::failed,
                  "no EGL driver for off-screen rendering (packages libegl-mesa0, libgl1-mesa-dri)"};
-  eglBindAPI(EGL_OPENGL_ES_API);
-  const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 1, EGL_NONE};
-  const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+  const EGLContext context = create_es31_context(display, EGL_NO_CONFIG_KHR);
   EglContext result(display, context);
   if (context == EGL_NO_CONTEXT ||
       eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) != EGL_TRUE)

@@ -18,6 +18,8 @@
 #include <string>
 #include <vector>
 
+#include "render/egl_es31.h"
+
 namespace lightwell::render {
 namespace {
 
@@ -138,11 +140,9 @@ class Screen final : public KmsScreen {
       display_ = EGL_NO_DISPLAY;
       return failure(name_, "no EGL driver for it");
     }
-    eglBindAPI(EGL_OPENGL_ES_API);
-    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 1, EGL_NONE};
     const EGLConfig config = choose_config();
     if (config == nullptr) return failure(name_, "its driver has no 8 bit RGB for OpenGL ES 3");
-    context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, attributes);
+    context_ = create_es31_context(display_, config);
     if (context_ == EGL_NO_CONTEXT) return failure(name_, "its driver has no OpenGL ES 3.1");
     window_ =
         eglCreateWindowSurface(display_, config, reinterpret_cast<EGLNativeWindowType>(surface_), nullptr);

@@ -222,9 +222,7 @@ Status Renderer::render(const LightSet& lights, const SceneCamera& camera, doubl
                      1 / static_cast<float>(samples), first == 0);
     lap(start, times_.shading_ms);
   }
-  if (glGetError() != GL_NO_ERROR)
-    return Error{ErrorKind::failed, "the OpenGL ES driver failed (out of memory?)"};
-  return {};
+  return check();
 }
 
 Status Renderer::render_samples(std::span<LightRow> all, const LightSet& lights, const SceneCamera& camera,

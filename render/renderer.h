@@ -14,6 +14,7 @@
 #include "render/compositor.h"
 #include "render/cutout_casters.h"
 #include "render/gbuffer.h"
+#include "render/graphics_reset.h"
 #include "render/picture.h"
 #include "render/shadow_atlas.h"
 #include "render/tone_mapper.h"
@@ -74,6 +75,8 @@ class Renderer {
   [[nodiscard]] int height() const { return options_.height; }
   [[nodiscard]] RadiancePicture radiance() const;
   [[nodiscard]] DisplayPicture display() const { return tone_mapper_.read(); }
+  // failed: the context is lost (GraphicsReset), or the driver failed: the last picture may be wrong.
+  [[nodiscard]] Status check() const { return reset_.check(); }
   // Waits until everything is drawn.
   static void finish() { glFinish(); }
   // Maps of the last frame: one a light that has power; 0 where nothing casts.
@@ -139,6 +142,7 @@ class Renderer {
   std::string shading_defines_;
   gl::Program unshadowed_;
   Sums unshadowed_sums_;
+  GraphicsReset reset_;
   PassTimes times_;
   std::size_t shadow_maps_ = 0;
   bool nothing_casts_ = false;

@@ -141,12 +141,16 @@ class Session {
         ++shown;
       }
       const bool over_it = window.take_overlay_changed() && frame_ > 0 && window.size() == picture_size();
-      if (draw || over_it) show(window, *overlay);
+      // Numbers change without a new picture: so does the age of light that stopped.
+      const double rate_s = seconds_since(rate_time);
+      const bool tick = rate_s >= 0.5 && frame_ > 0 && window.size() == picture_size();
+      if (draw || over_it || tick)
+        if (Status s = show(window, *overlay); !s) return s;
       if (frame_ > 0 && window.take_screenshot())
         if (Status s = save_screenshot(); !s) say(s.error().message);
       window.poll(draw ? 0 : 0.01);
-      if (const double elapsed_s = seconds_since(rate_time); elapsed_s >= 0.5) {
-        fps_ = shown / elapsed_s;
+      if (rate_s >= 0.5) {
+        fps_ = shown / rate_s;
         rate_time = Clock::now();
         shown = 0;
         window.set_title(title_text(numbers()));
@@ -248,6 +252,7 @@ class Session {
     if (Status s = show_probe(camera); !s) return s;
     renderer_->tone_map(dt_s);
     renderer_->finish();
+    if (Status s = renderer_->check(); !s) return s;
     times.ms = last_ms_ = seconds_since(start) * 1e3;
     budget_.frame_took(last_ms_);
     times.cpu_ms = cpu_ms() - cpu_start;
@@ -281,10 +286,10 @@ class Session {
   [[nodiscard]] std::pair<int, int> picture_size() const { return {renderer_->width(), renderer_->height()}; }
 
   // The picture that is there, and the overlay.
-  void show(Window& window, Overlay& overlay) const {
+  Status show(Window& window, Overlay& overlay) const {
     renderer_->present();
     overlay.draw(overlay_content(window), renderer_->width(), renderer_->height());
-    window.show();
+    return window.show();
   }
 
   // What keys of the window switched.

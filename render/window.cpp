@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/window.h"
 
+#include <EGL/egl.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
@@ -187,8 +188,12 @@ void Window::poll(double wait_s) {
     glfwPollEvents();
 }
 
-void Window::show() {
+// GLFW asks EGL for a context that tells of its loss in a way that OpenGL ES does not know, so swapping has to tell.
+Status Window::show() {
   glfwSwapBuffers(window_);
+  if (eglGetError() != EGL_CONTEXT_LOST) return {};
+  return Error{ErrorKind::failed,
+               "the OpenGL ES context is lost: the graphics driver was reset; it must be started again"};
 }
 bool Window::closed() const {
   return glfwWindowShouldClose(window_) != 0;

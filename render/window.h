@@ -36,7 +36,7 @@ class Window {
 
   // Handles what happened since the last call, waiting up to wait_s for something to happen.
   void poll(double wait_s = 0);
-  void show();  // swaps buffers
+  Status show();  // swaps buffers; failed: the context is lost
   [[nodiscard]] bool closed() const;
   // In pixels; {0, 0} while minimised.
   [[nodiscard]] std::pair<int, int> size() const;

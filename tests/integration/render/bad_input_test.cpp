@@ -4,6 +4,8 @@
 // without a word.
 #include <gtest/gtest.h>
 
+#include <GLES3/gl31.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -90,6 +92,32 @@ class BadInput : public ::testing::Test {
 
   test::TemporaryFolder folder_;
 };
+
+TEST_F(BadInput, ALostContextIsOneLineAndNoPictureOfItIsWritten) {
+  GLint extensions = 0;
+  {
+    const auto context = render::EglContext::create();
+    glGetIntegerv(GL_NUM_EXTENSIONS, &extensions);
+    bool tells = false;
+    for (GLuint i = 0; i < static_cast<GLuint>(extensions); ++i) {
+      const std::string name = reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, i));
+      tells = tells || name == "GL_EXT_robustness" || name == "GL_KHR_robustness";
+    }
+    if (!tells) GTEST_SKIP() << "this driver cannot tell that a context is lost";
+  }
+  // Built without sanitizers, whose library wants to be the first otherwise.
+  const Outcome o = render(
+      scene().text(), {"--frames", "5", "--out", file("f_%d.exr")},
+      {"LD_PRELOAD=" LIGHTWELL_LOST_CONTEXT, "LIGHTWELL_FRAMES=2", "ASAN_OPTIONS=verify_asan_link_order=0"});
+  EXPECT_EQ(o.exit_code, 1);
+  const std::string line =
+      "lightwell-render: the OpenGL ES context is lost: another program made the graphics driver reset";
+  EXPECT_TRUE(o.says(line)) << o.errors;
+  EXPECT_EQ(o.errors.find('\n', o.errors.find(line)), o.errors.size() - 1) << "nothing comes after it";
+  EXPECT_TRUE(o.picture.pixels.empty());
+  EXPECT_TRUE(std::filesystem::exists(file("f_1.exr")));
+  EXPECT_FALSE(std::filesystem::exists(file("f_2.exr")));
+}
 
 TEST_F(BadInput, WithoutACameraOneThatSeesTheSceneIsUsedAndSaid) {
   const Outcome o = render(scene().text());

@@ -4,12 +4,11 @@
 
 #include <csignal>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "interface/atomic_file.h"
-#include "interface/dds_topics.h"
 #include "interface/environment_io.h"
 #include "render/egl_context.h"
+#include "tests/integration/render/fake_probe.h"
 #include "tests/integration/render/program.h"
 #include "tests/support/dds.h"
 #include "tests/support/eventually.h"
@@ -20,29 +19,8 @@ namespace {
 
 using test::ChildProcess;
 using test::eventually;
+using test::FakeProbe;
 using test::start_render;
-
-// A daemon as far as a renderer can tell.
-struct FakeProbe {
-  explicit FakeProbe(const DdsOptions& options) : domain(DdsDomain::open(options).value()) {
-    writer = LightWriter::create(domain, "fake").value();
-  }
-  void send() {
-    LightFrame frame;
-    frame.header.number = ++number;
-    DirectionalLight light;
-    light.direction = Vec3f::UnitY();
-    light.illuminance = Rgb(100, 200, 300);
-    light.predicted_error = 0.125f;
-    frame.header.total_illuminance = light.illuminance;
-    frame.lights = {light};
-    EXPECT_TRUE(writer->write(frame));
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // a camera of 50 Hz
-  }
-  std::shared_ptr<DdsDomain> domain;
-  std::unique_ptr<LightWriter> writer;
-  std::uint64_t number = 0;
-};
 
 class Live : public ::testing::Test {
  protected:

@@ -4,7 +4,6 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-#include <fcntl.h>
 
 #include "interface/atomic_file.h"
 #include "interface/exr_file.h"
@@ -14,45 +13,12 @@
 #include "tests/integration/render/program.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_scene.h"
+#include "tests/support/virtual_display.h"
 
 namespace lightwell {
 namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
-
-// A display without a screen, on a number that the server chooses.
-class VirtualDisplay {
- public:
-  VirtualDisplay() {
-    int ends[2];
-    if (::pipe(ends) != 0) return;
-    pid_ = ::fork();
-    if (pid_ == 0) {
-      const std::string fd = std::to_string(ends[1]);
-      const int null = ::open("/dev/null", O_WRONLY);
-      ::dup2(null, STDERR_FILENO);
-      ::execlp("Xvfb", "Xvfb", "-displayfd", fd.c_str(), "-screen", "0", "800x600x24", "-nolisten", "tcp",
-               nullptr);
-      ::_exit(127);
-    }
-    ::close(ends[1]);
-    char text[16] = "";
-    if (::read(ends[0], text, sizeof text - 1) > 0) name_ = ":" + std::to_string(std::atoi(text));
-    ::close(ends[0]);
-  }
-  ~VirtualDisplay() {
-    if (pid_ <= 0) return;
-    ::kill(pid_, SIGTERM);
-    ::waitpid(pid_, nullptr, 0);
-  }
-  VirtualDisplay(const VirtualDisplay&) = delete;
-  VirtualDisplay& operator=(const VirtualDisplay&) = delete;
-  [[nodiscard]] const std::string& name() const { return name_; }  // empty: there is no Xvfb
-
- private:
-  pid_t pid_ = 0;
-  std::string name_;
-};
 
 class WindowOnAVirtualDisplay : public ::testing::Test {
  protected:
@@ -82,7 +48,7 @@ TEST_F(WindowOnAVirtualDisplay, OpensRendersResizesAndCloses) {
     ASSERT_TRUE(renderer->render(lights, (*window)->camera()));
     renderer->tone_map(render::ToneMap::none, 0.04);
     renderer->present();
-    (*window)->show();
+    ASSERT_TRUE((*window)->show());
   }
   while ((*window)->size() != std::pair(201, 99)) (*window)->poll(0.01);
   ASSERT_TRUE(renderer->resize(201, 99));
