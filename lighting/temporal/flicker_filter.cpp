@@ -28,6 +28,10 @@ constexpr float kLeastNoise = 3e-3f;
 // A running 68 % quantile of |innovation|: up where beyond, down where within, in balance.
 constexpr float kNoiseUp = 1.15f;
 constexpr float kNoiseDown = 0.9364f;
+// What is not yet learnt is taken in parts of the last jump, and that is forgotten in 16 frames (e^(−1/16) a frame) once
+// the unknowns were learnt and confirmed: after a step of a hundred and back, a small lamp is a step again.
+constexpr float kScaleDecay = 0.9394f;
+constexpr float kLeastScale = 1e-20f;  // before floats become slow to multiply
 constexpr float kDark = 0.2f;
 constexpr double kAveraged = 0.05;  // of a swing: less than this left by the exposure says nothing about it
 
@@ -233,6 +237,7 @@ void FlickerFilter::follow(Follower& f, float& power) const noexcept {
       f.quadrature[k] += gain[2 + 2 * k] * innovation;
     }
     if (f.age + 1u < kAges) ++f.age;
+    if (f.age > 2 * unknowns() && f.scale > f.noise + kLeastScale) f.scale *= kScaleDecay;
     if (!f.confirmed) confirm(f, swing, innovation);
   }
   if (f.confirmed) {

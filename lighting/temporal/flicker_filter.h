@@ -70,7 +70,7 @@ class FlickerFilter {
     std::array<float, kHarmonics> kept_swing{}, kept_quadrature{};
     float kept_level = 0;
     float noise = 0;  // of an innovation: a running quantile
-    float scale = 0;  // of the last jump
+    float scale = 0;  // of the last jump, fading
     // Running sums since the unknowns were learnt: of |swing foretold|, |innovation|, and −innovation along the swing.
     float foretold_swing = 0, missed = 0, against = 0;
     std::uint8_t age = 0;

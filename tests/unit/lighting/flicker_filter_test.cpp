@@ -105,6 +105,24 @@ TEST(FlickerFilter, ASwitchedLampPassesInItsFrameWithoutOvershoot) {
   }
 }
 
+// A step of a hundred says nothing of the steps that come seconds later: a small lamp is one again.
+TEST(FlickerFilter, ASmallLampLongAfterALargeStepPassesInItsFrame) {
+  const Camera camera;
+  for (const double depth : {0.0, 0.2})
+    for (const double large : {100.0, 1000.0})
+      for (const int later : {180, 181, 182, 240}) {
+        const auto level = [&](int frame) {
+          return frame >= 60 && frame < 90 ? large : frame >= later ? 1.25 : 1.0;
+        };
+        const auto out = filtered(camera, later + 40,
+                                  [&](int frame) { return camera.lamp(frame, depth) + level(frame) - 1; });
+        // within 4 % of the lamp, as any other step, and 0.3 % to which powers are trusted
+        for (int frame = later; frame < later + 40; ++frame)
+          EXPECT_NEAR(out[static_cast<std::size_t>(frame)], level(frame), 0.04 * 0.25 + 0.003)
+              << depth << " " << large << " " << later << " " << frame;
+      }
+}
+
 TEST(FlickerFilter, ALampThatFlickersGoesDarkAtOnceAndComesBackSteady) {
   const Camera camera;
   const auto out = filtered(
