@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include <embree3/rtcore.h>
+// Shadow maps against exact visibility of the same triangles under the same lights at the same pixel centres: what differs is
+// the maps'.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
-#include <cstring>
+#include <optional>
 
+#include "bench/pictures/ray_tracer.h"
 #include "render/egl_context.h"
 #include "render/gltf_scene.h"
 #include "render/renderer.h"
@@ -15,90 +18,6 @@ namespace lightwell {
 namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
-
-// Exact visibility of the same triangles under the same lights at the same pixel centres: what differs is the
-// maps'.
-class ExactVisibility {
- public:
-  explicit ExactVisibility(const Scene& scene) : scene_(scene) {
-    for (const bool casters_only : {false, true}) {
-      RTCScene& target = casters_only ? casters_ : all_;
-      target = rtcNewScene(device_);
-      RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-      auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-          geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, scene.vertices.size()));
-      for (std::size_t i = 0; i < scene.vertices.size(); ++i)
-        std::memcpy(vertices + 3 * i, scene.vertices[i].position.data(), 12);
-      std::vector<std::uint32_t> indices;
-      for (const auto& p : scene.primitives)
-        if (p.casts_shadow || !casters_only)
-          indices.insert(indices.end(), scene.indices.begin() + p.first_index,
-                         scene.indices.begin() + p.first_index + p.index_count);
-      std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
-                                          indices.size() / 3),
-                  indices.data(), indices.size() * 4);
-      rtcCommitGeometry(geometry);
-      rtcAttachGeometry(target, geometry);
-      rtcReleaseGeometry(geometry);
-      rtcCommitScene(target);
-    }
-  }
-  ~ExactVisibility() {
-    rtcReleaseScene(all_);
-    rtcReleaseScene(casters_);
-    rtcReleaseDevice(device_);
-  }
-  ExactVisibility(const ExactVisibility&) = delete;
-  ExactVisibility& operator=(const ExactVisibility&) = delete;
-
-  // Radiance along a ray from the eye; Lambertian.
-  [[nodiscard]] Rgb radiance(const Vec3f& eye, const Vec3f& ray, const LightSet& lights) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    RTCRayHit hit{};
-    set(hit.ray, eye, ray);
-    hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(all_, &context, &hit);
-    if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Rgb::Zero();
-    const std::size_t t = std::size_t{hit.hit.primID} * 3;
-    const auto& [a, b, c] = std::tie(corner(t), corner(t + 1), corner(t + 2));
-    const float u = hit.hit.u;
-    const float v = hit.hit.v;
-    const Vec3f normal = ((1 - u - v) * a.normal + u * b.normal + v * c.normal).normalized();
-    const Vec3f face = (b.position - a.position).cross(c.position - a.position).normalized();
-    const Vec3f point = (1 - u - v) * a.position + u * b.position + v * c.position + 1e-4f * face;
-    Rgb sum = Rgb::Zero();
-    for (const DirectionalLight& light : lights.lights) {
-      const float cosine = normal.dot(light.direction);
-      if (cosine <= 0) continue;
-      RTCRay shadow{};
-      set(shadow, point, light.direction);
-      rtcOccluded1(casters_, &context, &shadow);
-      if (shadow.tfar >= 0) sum += light.illuminance * cosine;
-    }
-    return sum * material(t).base_color / static_cast<float>(kPi);
-  }
-
- private:
-  static void set(RTCRay& ray, const Vec3f& origin, const Vec3f& direction) {
-    ray.org_x = origin.x(), ray.org_y = origin.y(), ray.org_z = origin.z();
-    ray.dir_x = direction.x(), ray.dir_y = direction.y(), ray.dir_z = direction.z();
-    ray.tfar = std::numeric_limits<float>::infinity();
-    ray.mask = ~0u;
-  }
-  [[nodiscard]] const Vertex& corner(std::size_t i) const { return scene_.vertices[scene_.indices[i]]; }
-  [[nodiscard]] const Material& material(std::size_t index) const {
-    for (const auto& p : scene_.primitives)
-      if (index >= p.first_index && index < p.first_index + p.index_count)
-        return scene_.materials[static_cast<std::size_t>(p.material)];
-    return scene_.materials[0];
-  }
-
-  const Scene& scene_;
-  RTCDevice device_ = rtcNewDevice("threads=1");
-  RTCScene all_ = nullptr;
-  RTCScene casters_ = nullptr;
-};
 
 // A sky of equal lights over the hemisphere and a sun.
 LightSet sky_and_sun(int count, float sun) {
@@ -143,17 +62,17 @@ class ShadowMapAccuracy : public ::testing::Test {
   // ‖picture − exact‖ / ‖exact‖ over all pixels and channels.
   double relative_rmse(const LightSet& lights, int shadow_size) {
     const auto rendered = picture(lights, shadow_size);
-    const ExactVisibility exact(scene_);
-    const render::View view = render::make_view(scene_.cameras[0], kWidth, kHeight);
+    const auto tracer = pictures::RayTracer::create(scene_);
+    EXPECT_TRUE(tracer.ok());
+    if (!tracer) return 1;
+    const auto exact = tracer->picture(scene_.cameras[0], kWidth, kHeight, lights.lights);
     double difference = 0;
     double total = 0;
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) {
-        const Rgb expected = exact.radiance(view.eye, pixel_ray(view, x, y, kWidth, kHeight), lights);
-        const float* p = &rendered.rgba[4 * static_cast<std::size_t>(y * kWidth + x)];
-        difference += (Rgb(p[0], p[1], p[2]) - expected).square().sum();
-        total += expected.square().sum();
-      }
+    for (std::size_t i = 0; i < exact.rgba.size(); ++i) {
+      if (i % 4 == 3) continue;
+      difference += std::pow(static_cast<double>(rendered.rgba[i] - exact.rgba[i]), 2);
+      total += std::pow(static_cast<double>(exact.rgba[i]), 2);
+    }
     const double error = std::sqrt(difference / total);
     std::printf("relative RMSE against exact visibility: %.4f (%zu lights, maps of %d)\n", error,
                 lights.lights.size(), shadow_size);
