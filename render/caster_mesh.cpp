@@ -11,6 +11,9 @@
 #include <limits>
 #include <numeric>
 
+#include "render/grouped.h"
+#include "render/surface_distance.h"
+
 namespace lightwell::render {
 namespace {
 
@@ -21,31 +24,6 @@ constexpr Index kNone = std::numeric_limits<Index>::max();
 Index count_of_corners(std::span<const Index> triangles) {
   return triangles.empty() ? 0 : *std::max_element(triangles.begin(), triangles.end()) + 1;
 }
-
-// Values grouped by a key below keys: those of key k are values[starts[k]] to values[starts[k + 1]], in their order.
-template <class Value>
-struct Groups {
-  std::vector<std::size_t> starts;
-  std::vector<Value> values;
-
-  // each(put) calls put(key, value) for every pair, the same ones each of the two times it is called.
-  template <class Each>
-  Groups(std::size_t keys, const Each& each) : starts(keys + 1, 0) {
-    each([&](std::size_t key, const Value&) { ++starts[key + 1]; });
-    std::partial_sum(starts.begin(), starts.end(), starts.begin());
-    values.resize(starts.back());
-    std::vector<std::size_t> next(starts.begin(), starts.end() - 1);
-    each([&](std::size_t key, const Value& value) { values[next[key]++] = value; });
-  }
-  [[nodiscard]] std::span<const Value> of(std::size_t key) const {
-    return std::span(values).subspan(starts[key], starts[key + 1] - starts[key]);
-  }
-  void sort() {
-    for (std::size_t k = 0; k + 1 < starts.size(); ++k)
-      std::sort(values.begin() + static_cast<std::ptrdiff_t>(starts[k]),
-                values.begin() + static_cast<std::ptrdiff_t>(starts[k + 1]));
-  }
-};
 
 template <class Visit>
 void for_each_edge(std::span<const Index> triangles, const Visit& visit) {
@@ -132,150 +110,6 @@ Size size_of(std::span<const Index> triangles, std::span<const Vec3f> positions)
   return size;
 }
 
-double distance_to_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
-  const Vec3d along = b - a;
-  const double squared = along.squaredNorm();
-  const double t = squared > 0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0;
-  return (a + t * along - p).norm();
-}
-
-double distance_to_triangle(const Vec3d& p, const std::array<Vec3d, 3>& t) {
-  const Vec3d n = (t[1] - t[0]).cross(t[2] - t[0]);
-  const double squared = n.squaredNorm();
-  bool above = squared > 0;
-  for (std::size_t e = 0; e < 3 && above; ++e) above = n.dot((t[(e + 1) % 3] - t[e]).cross(p - t[e])) >= 0;
-  if (above) return std::abs(n.dot(p - t[0])) / std::sqrt(squared);
-  return std::min({distance_to_segment(p, t[0], t[1]), distance_to_segment(p, t[1], t[2]),
-                   distance_to_segment(p, t[2], t[0])});
-}
-
-using Corners = std::array<Vec3d, 3>;
-
-Corners corners_of(std::span<const Index> triangles, std::size_t t, std::span<const Vec3f> positions) {
-  return {positions[triangles[3 * t]].cast<double>(), positions[triangles[3 * t + 1]].cast<double>(),
-          positions[triangles[3 * t + 2]].cast<double>()};
-}
-
-// Which triangles of a surface are within a distance of a point, by a grid of cells.
-class Neighbourhood {
- public:
-  Neighbourhood(std::span<const Index> triangles, std::span<const Vec3f> positions, double reach_m)
-      : triangles_(triangles),
-        positions_(positions),
-        reach_m_(reach_m),
-        low_(box_of(triangles, positions).first),
-        cells_(grid()) {}
-
-  // Every point of the triangle is within reach of the surface. Distance to one flat triangle is convex: where
-  // it holds of the corners, it holds of all between. Where the corners are near different triangles, quarters
-  // are asked; after kQuarterings of them the answer is no.
-  [[nodiscard]] bool contains(const Corners& t, int quarterings = 0) const {
-    constexpr int kQuarterings = 7;
-    const auto c = cell(t[0]);
-    for (int i = 0; i < 3; ++i)
-      if (c[static_cast<std::size_t>(i)] < 0 ||
-          c[static_cast<std::size_t>(i)] >= size_[static_cast<std::size_t>(i)])
-        return false;
-    // No point of the triangle is farther from its first corner than the farther of the others.
-    const double size = std::sqrt(std::max((t[1] - t[0]).squaredNorm(), (t[2] - t[0]).squaredNorm()));
-    bool near_corner = false;
-    const auto holds = [&](Index i) {
-      if (!in_box(t[0], i)) return false;
-      const Corners other = corners_of(triangles_, i, positions_);
-      const double distance = distance_to_triangle(t[0], other);
-      near_corner = near_corner || distance <= reach_m_;
-      return distance + size <= reach_m_ ||
-             (distance <= reach_m_ && distance_to_triangle(t[1], other) <= reach_m_ &&
-              distance_to_triangle(t[2], other) <= reach_m_);
-    };
-    // What was near the last one is often near this one.
-    if (holds(last_)) return true;
-    for (const Index i : cells_.of(key(c))) {
-      if (!holds(i)) continue;
-      last_ = i;
-      return true;
-    }
-    if (!near_corner || quarterings == kQuarterings) return false;
-    const Corners middle = {(t[0] + t[1]) / 2, (t[1] + t[2]) / 2, (t[2] + t[0]) / 2};
-    return contains({t[0], middle[0], middle[2]}, quarterings + 1) &&
-           contains({t[1], middle[1], middle[0]}, quarterings + 1) &&
-           contains({t[2], middle[2], middle[1]}, quarterings + 1) && contains(middle, quarterings + 1);
-  }
-
- private:
-  using Cell = std::array<std::int64_t, 3>;
-
-  static std::pair<Vec3d, Vec3d> box_of(std::span<const Index> triangles, std::span<const Vec3f> positions) {
-    Vec3f low = positions[triangles[0]];
-    Vec3f high = low;
-    for (const Index i : triangles) {
-      low = low.cwiseMin(positions[i]);
-      high = high.cwiseMax(positions[i]);
-    }
-    return {low.cast<double>(), high.cast<double>()};
-  }
-
-  // Within reach of the triangle's box, which is quickly seen.
-  [[nodiscard]] bool in_box(const Vec3d& p, Index t) const {
-    const Vec3f& a = positions_[triangles_[3 * t]];
-    const Vec3f& b = positions_[triangles_[3 * t + 1]];
-    const Vec3f& c = positions_[triangles_[3 * t + 2]];
-    for (int i = 0; i < 3; ++i)
-      if (p[i] < static_cast<double>(std::min({a[i], b[i], c[i]})) - reach_m_ ||
-          p[i] > static_cast<double>(std::max({a[i], b[i], c[i]})) + reach_m_)
-        return false;
-    return true;
-  }
-
-  // A surface through a cube of n³ cells fills about 6 n² of them: a few triangles in each.
-  Groups<Index> grid() {
-    const double cells = std::clamp(std::sqrt(static_cast<double>(triangles_.size()) / 3 / 12), 16.0, 200.0);
-    const auto [low, high] = box_of(triangles_, positions_);
-    cell_m_ = std::max({reach_m_, (high - low).maxCoeff() / cells, std::numeric_limits<double>::min()});
-    low_ = low.array() - reach_m_;
-    size_ = {1, 1, 1};
-    const Cell last = cell(high.array() + reach_m_);
-    for (std::size_t i = 0; i < 3; ++i) size_[i] = last[i] + 1;
-    return Groups<Index>(static_cast<std::size_t>(size_[0] * size_[1] * size_[2]), [&](const auto& put) {
-      for (std::size_t t = 0; t < triangles_.size() / 3; ++t) {
-        const Corners c = corners_of(triangles_, t, positions_);
-        const Cell from = cell(c[0].cwiseMin(c[1]).cwiseMin(c[2]).array() - reach_m_);
-        const Cell to = cell(c[0].cwiseMax(c[1]).cwiseMax(c[2]).array() + reach_m_);
-        for (auto x = from[0]; x <= to[0]; ++x)
-          for (auto y = from[1]; y <= to[1]; ++y)
-            for (auto z = from[2]; z <= to[2]; ++z) put(key({x, y, z}), static_cast<Index>(t));
-      }
-    });
-  }
-
-  [[nodiscard]] Cell cell(const Vec3d& p) const {
-    Cell c{};
-    for (int i = 0; i < 3; ++i)
-      c[static_cast<std::size_t>(i)] = static_cast<std::int64_t>(std::floor((p[i] - low_[i]) / cell_m_));
-    return c;
-  }
-  [[nodiscard]] std::size_t key(const Cell& c) const {
-    return static_cast<std::size_t>((c[0] * size_[1] + c[1]) * size_[2] + c[2]);
-  }
-
-  std::span<const Index> triangles_;
-  std::span<const Vec3f> positions_;
-  double reach_m_;
-  double cell_m_ = 1;
-  Vec3d low_;
-  Cell size_{};
-  Groups<Index> cells_;
-  mutable Index last_ = 0;  // triangle that the last answer rested on
-};
-
-bool lies_within(std::span<const Index> triangles, std::span<const Index> of,
-                 std::span<const Vec3f> positions, double distance_m) {
-  const Neighbourhood near(of, positions, distance_m);
-  for (std::size_t t = 0; t < triangles.size() / 3; ++t)
-    if (!near.contains(corners_of(triangles, t, positions))) return false;
-  return true;
-}
-
 // What the library makes of it; target_m: its mean of distances. Looks at no positions but those in use.
 // place: kNone for every position, as it is left.
 std::vector<Index> collapse(std::span<const Index> triangles, std::span<const Vec3f> positions,
@@ -304,44 +138,135 @@ std::vector<Index> collapse(std::span<const Index> triangles, std::span<const Ve
 }
 
 // Triangles in the order of a curve that keeps to one place for long (Morton's), so that stretches of it are patches.
-std::vector<Index> in_patches(const Piece& piece) {
+std::vector<Index> in_patches(std::span<const Index> triangles, std::span<const Vec3f> positions) {
   constexpr int kBits = 10;
-  Vec3f low = piece.positions[0];
+  Vec3f low = positions[triangles[0]];
   Vec3f high = low;
-  for (const Vec3f& p : piece.positions) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
+  for (const Index i : triangles) {
+    low = low.cwiseMin(positions[i]);
+    high = high.cwiseMax(positions[i]);
   }
   const float scale =
       ((1 << kBits) - 1) / std::max((high - low).maxCoeff(), std::numeric_limits<float>::min());
   std::vector<std::pair<Index, Index>> order;
-  order.reserve(piece.triangles.size() / 3);
-  for (std::size_t t = 0; t < piece.triangles.size(); t += 3) {
-    const Vec3f at = (piece.positions[piece.triangles[t]] - low) * scale;
+  order.reserve(triangles.size() / 3);
+  for (std::size_t t = 0; t < triangles.size(); t += 3) {
+    const Vec3f at = (positions[triangles[t]] - low) * scale;
     Index code = 0;
     for (int bit = kBits - 1; bit >= 0; --bit)
       for (int i = 0; i < 3; ++i) code = code << 1 | (static_cast<Index>(at[i]) >> bit & 1);
     order.emplace_back(code, static_cast<Index>(t));
   }
   std::sort(order.begin(), order.end());
-  std::vector<Index> triangles;
-  triangles.reserve(piece.triangles.size());
+  std::vector<Index> ordered;
+  ordered.reserve(triangles.size());
   for (const auto& [code, t] : order)
-    for (Index c = 0; c < 3; ++c) triangles.push_back(piece.triangles[t + c]);
-  return triangles;
+    for (Index c = 0; c < 3; ++c) ordered.push_back(triangles[t + c]);
+  return ordered;
 }
 
-// The library's time for a large mesh is that of memory far apart: patches of it, with their borders kept, go first.
-std::vector<Index> collapse_patches(const Piece& piece, float target_m, std::vector<Index>& place) {
-  constexpr std::size_t kPatch = 3 * 50'000;
-  const std::vector<Index> triangles = in_patches(piece);
-  std::vector<Index> result;
-  for (std::size_t first = 0; first < triangles.size(); first += kPatch) {
-    const auto patch = std::span(triangles).subspan(first, std::min(kPatch, triangles.size() - first));
-    const std::vector<Index> fewer = collapse(patch, piece.positions, target_m, true, place);
-    result.insert(result.end(), fewer.begin(), fewer.end());
+// Every edge is run along as often more in one direction than in the other by the triangles of both: what is closed with
+// the one in it is closed with the other, though more than two triangles may meet at an edge.
+bool have_one_border(std::span<const Index> a, std::span<const Index> b) {
+  std::vector<std::pair<std::uint64_t, int>> edges;
+  edges.reserve(a.size() + b.size());
+  const auto add = [&](std::span<const Index> triangles, int sign) {
+    for_each_edge(triangles, [&](Index from, Index to, Index) {
+      edges.emplace_back(std::uint64_t{std::min(from, to)} << 32 | std::max(from, to),
+                         from < to ? sign : -sign);
+    });
+  };
+  add(a, 1);
+  add(b, -1);
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i < edges.size();) {
+    int balance = 0;
+    const std::uint64_t edge = edges[i].first;
+    for (; i < edges.size() && edges[i].first == edge; ++i) balance += edges[i].second;
+    if (balance != 0) return false;
   }
-  return result;
+  return true;
+}
+
+// Patches of a surface: stretches of its triangles.
+class Patches {
+ public:
+  Patches(std::span<const Index> triangles, std::span<const Vec3f> positions, std::size_t size)
+      : triangles_(in_patches(triangles, positions)),
+        positions_(positions),
+        size_(size),
+        of_corner_(positions.size(), [&](const auto& put) {
+          for (std::size_t i = 0; i < triangles_.size(); ++i) put(triangles_[i], static_cast<Index>(i / 3));
+        }) {}
+
+  // All simplified, each with its borders kept. offset: of the first border, triangles
+  [[nodiscard]] std::vector<Index> simplified(float max_distance_m, std::size_t offset,
+                                              std::vector<Index>& place) const {
+    std::vector<Index> all;
+    for (std::size_t first = 0; first < triangles_.size();) {
+      const std::size_t size = first == 0 && offset > 0 ? 3 * offset : size_;
+      const auto patch = std::span(triangles_).subspan(first, std::min(size, triangles_.size() - first));
+      simplify_into(all, patch, max_distance_m, place);
+      first += patch.size();
+    }
+    return all;
+  }
+
+ private:
+  // The library errs by far more than its mean in few places: halves find them. What fails in the smallest stays.
+  void simplify_into(std::vector<Index>& all, std::span<const Index> patch, float max_distance_m,
+                     std::vector<Index>& place) const {
+    constexpr std::size_t kSmallest = 3 * 150;
+    const auto bound_m = static_cast<double>(max_distance_m);
+    const std::vector<Index> fewer = collapse(patch, positions_, max_distance_m * 0.4f, true, place);
+    if (have_one_border(patch, fewer) && lies_within(patch, fewer, positions_, bound_m) &&
+        lies_within(fewer, with_neighbours(patch), positions_, bound_m)) {
+      all.insert(all.end(), fewer.begin(), fewer.end());
+    } else if (patch.size() <= kSmallest) {
+      all.insert(all.end(), patch.begin(), patch.end());
+    } else {
+      const std::size_t half = patch.size() / 6 * 3;
+      simplify_into(all, patch.first(half), max_distance_m, place);
+      simplify_into(all, patch.subspan(half), max_distance_m, place);
+    }
+  }
+
+  // A border is jagged: what is simpler may leave the patch there, though not the surface.
+  [[nodiscard]] std::vector<Index> with_neighbours(std::span<const Index> patch) const {
+    const auto first = static_cast<Index>((patch.data() - triangles_.data()) / 3);
+    const auto end = static_cast<Index>(first + patch.size() / 3);
+    std::vector<Index> outside;
+    for (const Index corner : patch)
+      for (const Index t : of_corner_.of(corner))
+        if (t < first || t >= end) outside.push_back(t);
+    std::sort(outside.begin(), outside.end());
+    outside.erase(std::unique(outside.begin(), outside.end()), outside.end());
+    std::vector<Index> all(patch.begin(), patch.end());
+    for (const Index t : outside)
+      for (std::size_t c = 0; c < 3; ++c) all.push_back(triangles_[3 * t + c]);
+    return all;
+  }
+
+  std::vector<Index> triangles_;
+  std::span<const Vec3f> positions_;
+  std::size_t size_;
+  Groups<Index> of_corner_;
+};
+
+// A large mesh costs more than its parts, whose memory is near: patches go, in rounds, as their borders cannot go before
+// they lie within another patch. Each round takes a share of the distance: surfaces a and b apart, and b and c, are no more
+// than the sum apart.
+std::vector<Index> simplify_by_patches(const Piece& piece, float max_distance_m, std::vector<Index>& place) {
+  constexpr std::size_t kPatch = 8'000;  // triangles
+  std::vector<Index> triangles = piece.triangles;
+  float left_m = max_distance_m;
+  for (const float share : {0.25f, 1.0f}) {
+    const float share_m = share * left_m;
+    left_m -= share_m;
+    const Patches patches(triangles, piece.positions, 3 * kPatch);
+    triangles = patches.simplified(share_m, share < 1 ? 0 : kPatch / 2, place);
+  }
+  return triangles;
 }
 
 // Every edge is run along as often in one direction as in the other: no light finds a way in, though more than two
@@ -362,30 +287,29 @@ bool has_no_border(std::span<const Index> triangles) {
   return true;
 }
 
-std::vector<Index> simplify_piece(const Piece& piece, float max_distance_m) {
+std::vector<Index> simplify_piece(const Piece& piece, float max_distance_m, float spent_m) {
   const bool closed = is_closed(piece.triangles);
   const Size size = size_of(piece.triangles, piece.positions);
   // Volume over surface is half a bar's radius, half a plate's thickness.
   if (closed)
     max_distance_m =
         std::min(max_distance_m, static_cast<float>(std::abs(size.volume_m3) / size.area_m2 / 4));
+  max_distance_m -= spent_m;
   if (!(max_distance_m > 0)) return piece.triangles;
   // The library bounds a mean of distances, edge by edge; what is asked is a bound on the largest. So it is given
   // less and less until the result keeps to it.
   constexpr int kAttempts = 12;
   constexpr float kLess = 0.85f;
-  // Where patches go first, they take a share of the distance.
-  constexpr std::size_t kLarge = 3 * 200'000;
-  constexpr float kPatchShare = 0.25f;
+  constexpr std::size_t kLarge = 3 * 20'000;
   std::vector<Index> place(piece.positions.size(), kNone);
-  const bool large = piece.triangles.size() > kLarge;
-  const std::vector<Index> begin =
-      large ? collapse_patches(piece, kPatchShare * max_distance_m, place) : piece.triangles;
-  // What is checked against very many triangles begins nearer to where it holds.
-  float target = large ? max_distance_m / 2 : max_distance_m;
+  if (piece.triangles.size() > kLarge) {
+    std::vector<Index> fewer = simplify_by_patches(piece, max_distance_m, place);
+    return !closed || has_no_border(fewer) ? fewer : piece.triangles;
+  }
+  float target = max_distance_m;
   std::vector<Index> second_best = piece.triangles;
   for (int attempt = 0; attempt < kAttempts; ++attempt, target *= kLess) {
-    std::vector<Index> fewer = collapse(begin, piece.positions, target, !closed, place);
+    std::vector<Index> fewer = collapse(piece.triangles, piece.positions, target, !closed, place);
     if (fewer.empty() || fewer.size() >= second_best.size()) continue;
     const bool stays_closed = !closed || is_closed(fewer);
     if (!stays_closed && !has_no_border(fewer)) continue;
@@ -415,18 +339,11 @@ bool is_closed(std::span<const Index> triangles) {
   return !triangles.empty();
 }
 
-bool stay_together(std::span<const Index> a, std::span<const Index> b, std::span<const Vec3f> positions,
-                   double distance_m) {
-  return a.empty() || b.empty()
-             ? a.size() == b.size()
-             : lies_within(a, b, positions, distance_m) && lies_within(b, a, positions, distance_m);
-}
-
 std::vector<Index> simplify(std::span<const Index> triangles, std::span<const Vec3f> positions,
-                            float max_distance_m) {
+                            float max_distance_m, float spent_m) {
   std::vector<Index> result;
   for (const Piece& piece : pieces_of(triangles, positions))
-    for (const Index i : simplify_piece(piece, max_distance_m)) result.push_back(piece.origin[i]);
+    for (const Index i : simplify_piece(piece, max_distance_m, spent_m)) result.push_back(piece.origin[i]);
   return result;
 }
 

@@ -4,12 +4,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "render/caster_mesh.h"
+#include "render/surface_distance.h"
 
 namespace lightwell::render {
 namespace {
@@ -48,7 +50,14 @@ Mesh weld(const Scene& scene, std::size_t number, const Poses& poses) {
   Mesh mesh;
   mesh.primitive = number;
   mesh.triangles.reserve(primitive.index_count);
-  const std::size_t slots = std::bit_ceil(std::size_t{primitive.index_count} * 2 + 1);
+  const auto indices = std::span(scene.indices).subspan(primitive.first_index, primitive.index_count);
+  if (indices.empty()) return mesh;
+  const auto [least, most] = std::minmax_element(indices.begin(), indices.end());
+  const Index first = *least;
+  // A vertex is looked for once, where those in use stand together.
+  const std::size_t range = *most - first + std::size_t{1};
+  std::vector<Index> known(range <= 2 * indices.size() ? range : 0, kNone);
+  const std::size_t slots = std::bit_ceil(std::min(range, indices.size()) * 2 + 1);
   std::vector<Index> table(slots, kNone);
   const auto together = [&](Index a, Index b) {
     if (scene.vertices[a].position != scene.vertices[b].position) return false;
@@ -56,8 +65,7 @@ Mesh weld(const Scene& scene, std::size_t number, const Poses& poses) {
       return pose[a - primitive.first_vertex] == pose[b - primitive.first_vertex];
     });
   };
-  for (Index i = 0; i < primitive.index_count; ++i) {
-    const Index vertex = scene.indices[primitive.first_index + i];
+  const auto corner_of = [&](Index vertex) {
     const Vec3f& p = scene.vertices[vertex].position;
     std::size_t slot = hash(p) & (slots - 1);
     while (table[slot] != kNone && !together(mesh.vertices[table[slot]], vertex))
@@ -67,7 +75,16 @@ Mesh weld(const Scene& scene, std::size_t number, const Poses& poses) {
       mesh.positions.push_back(p);
       mesh.vertices.push_back(vertex);
     }
-    mesh.triangles.push_back(table[slot]);
+    return table[slot];
+  };
+  for (const Index vertex : indices) {
+    if (known.empty()) {
+      mesh.triangles.push_back(corner_of(vertex));
+      continue;
+    }
+    Index& corner = known[vertex - first];
+    if (corner == kNone) corner = corner_of(vertex);
+    mesh.triangles.push_back(corner);
   }
   return mesh;
 }
@@ -158,8 +175,9 @@ std::vector<Vec3f> positions_in(const std::vector<Vec3f>& pose, const Mesh& mesh
   return positions;
 }
 
-// What bends is simplified where it is bent most, and the other way round, until that holds in all poses.
-void simplify_mesh(Mesh& mesh, const Scene& scene, const Poses& poses, float max_distance_m) {
+// What bends is simplified where it is bent most, and the other way round, until that holds in all poses. spent_m: how
+// far the mesh is from the scene's already.
+void simplify_mesh(Mesh& mesh, const Scene& scene, const Poses& poses, float max_distance_m, float spent_m) {
   std::vector<std::vector<Vec3f>> shapes = {mesh.positions};
   const Index first_vertex = scene.primitives[mesh.primitive].first_vertex;
   std::size_t most_bent = 0;
@@ -171,16 +189,17 @@ void simplify_mesh(Mesh& mesh, const Scene& scene, const Poses& poses, float max
       sum_m2 += static_cast<double>((shapes.back()[i] - mesh.positions[i]).squaredNorm());
     if (sum_m2 > most_m2) most_m2 = sum_m2, most_bent = shapes.size() - 1;
   }
-  const auto try_with = [&](std::size_t shape, float target_m) {
-    std::vector<Index> fewer = simplify(mesh.triangles, shapes[shape], target_m);
+  const float left_m = max_distance_m - spent_m;
+  const auto try_with = [&](std::size_t shape, float share_m) {
+    std::vector<Index> fewer = simplify(mesh.triangles, shapes[shape], spent_m + share_m, spent_m);
     for (std::size_t i = 0; i < shapes.size(); ++i)
-      if (i != shape && !stay_together(mesh.triangles, fewer, shapes[i], static_cast<double>(max_distance_m)))
+      if (i != shape && !stay_together(mesh.triangles, fewer, shapes[i], static_cast<double>(left_m)))
         return false;
     mesh.triangles = std::move(fewer);
     return true;
   };
-  for (const float target_m : {max_distance_m, max_distance_m / 2, max_distance_m / 4})
-    if (try_with(most_bent, target_m) || (most_bent != 0 && try_with(0, target_m)) || shapes.size() == 1)
+  for (const float share_m : {left_m, left_m / 2, left_m / 4})
+    if (try_with(most_bent, share_m) || (most_bent != 0 && try_with(0, share_m)) || shapes.size() == 1)
       return;
 }
 
@@ -255,17 +274,27 @@ void Casters::move(const Scene& scene_now, std::span<const std::size_t> moved) {
   bound(*this);
 }
 
-Casters find_casters(const Scene& scene, int map_size) {
-  Casters casters;
+namespace {
+
+// What all levels of simplification have in common.
+struct Prepared {
+  Casters casters;  // without triangles
+  std::vector<Mesh> meshes;
+  std::vector<MovingPart> moving;
+};
+
+Prepared prepare(const Scene& scene) {
+  Prepared prepared;
+  Casters& casters = prepared.casters;
   casters.is_support.assign(scene.primitives.size(), false);
   Box box;
   for (const Index i : scene.indices) box.add(scene.vertices[i].position);
   // Single precision leaves this much of the scene's size in a transformed plane.
   const float tolerance = 1e-5f * (box.high - box.low).norm();
-  const bool moves = scene.rig.moves();
-  std::vector<MovingPart> moving = sample_motion(scene);
+  prepared.moving = sample_motion(scene);
+  const std::vector<MovingPart>& moving = prepared.moving;
 
-  std::vector<Mesh> meshes;
+  std::vector<Mesh>& meshes = prepared.meshes;
   for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
     const Primitive& primitive = scene.primitives[p];
     if (!primitive.casts_shadow) continue;
@@ -293,16 +322,49 @@ Casters find_casters(const Scene& scene, int map_size) {
     casters.cutouts.push_back(mesh.primitive);
     mesh.triangles.clear();
   }
-  if (map_size > 0) {
-    const float texel_m = 2 * casters.objects.radius / static_cast<float>(map_size);
-    for (Mesh& mesh : meshes)
-      if (mesh.run == Mesh::closed || mesh.run == Mesh::open)
-        simplify_mesh(mesh, scene, moving[mesh.primitive].poses, kSimplifiedTexels * texel_m);
-  }
-  std::stable_sort(meshes.begin(), meshes.end(), [](const Mesh& a, const Mesh& b) { return a.run < b.run; });
-  for (const Mesh& mesh : meshes) append(mesh, moves, casters);
-  if (!moves) casters.bodies.clear();
+  if (!scene.rig.moves()) casters.bodies.clear();
+  return prepared;
+}
+
+Casters assemble(const Casters& common, const std::vector<Mesh>& meshes, bool moves) {
+  Casters casters = common;
+  for (const Mesh::Run run : {Mesh::closed, Mesh::open, Mesh::support, Mesh::cutout})
+    for (const Mesh& mesh : meshes)
+      if (mesh.run == run) append(mesh, moves, casters);
   return casters;
+}
+
+}  // namespace
+
+std::vector<Casters> find_casters(const Scene& scene, std::span<const int> map_sizes) {
+  Prepared prepared = prepare(scene);
+  std::vector<Mesh>& meshes = prepared.meshes;
+  const bool moves = scene.rig.moves();
+  std::vector<Casters> levels;
+  // Of each mesh as it is drawn: how far it is from the scene's. Small ones are simplified from the scene's each time,
+  // which leaves fewer triangles.
+  constexpr std::size_t kLarge = 3 * 100'000;
+  std::vector<float> spent_m(meshes.size(), 0);
+  std::vector<std::vector<Index>> of_scene;
+  for (const Mesh& mesh : meshes)
+    of_scene.push_back(mesh.triangles.size() > kLarge ? std::vector<Index>() : mesh.triangles);
+  for (const int size : map_sizes) {
+    const float texel_m = size > 0 ? 2 * prepared.casters.objects.radius / static_cast<float>(size) : 0;
+    const float max_distance_m = kSimplifiedTexels * texel_m;
+    for (std::size_t i = 0; i < meshes.size() && max_distance_m > 0; ++i) {
+      Mesh& mesh = meshes[i];
+      if (mesh.run != Mesh::closed && mesh.run != Mesh::open) continue;
+      if (!of_scene[i].empty()) mesh.triangles = of_scene[i];
+      simplify_mesh(mesh, scene, prepared.moving[mesh.primitive].poses, max_distance_m, spent_m[i]);
+      if (of_scene[i].empty()) spent_m[i] = max_distance_m;
+    }
+    levels.push_back(assemble(prepared.casters, meshes, moves));
+  }
+  return levels;
+}
+
+Casters find_casters(const Scene& scene, int map_size) {
+  return std::move(find_casters(scene, std::array{map_size}).front());
 }
 
 }  // namespace lightwell::render

@@ -72,5 +72,7 @@ inline constexpr float kSimplifiedTexels = 0.25f;
 // kSimplifiedTexels of them, what bends or grows in nine poses of its animation. 0: every triangle of the scene.
 // Bounds and supports are the scene's either way.
 Casters find_casters(const Scene& scene, int map_size = 0);
+// The same for maps of several sizes, from the largest to the smallest; large meshes are simplified from level to level.
+std::vector<Casters> find_casters(const Scene& scene, std::span<const int> map_sizes);
 
 }  // namespace lightwell::render

@@ -72,13 +72,11 @@ class Uniforms {
 Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& options) {
   Renderer r;
   r.options_ = options;
-  r.casters_ = find_casters(scene, options.simplify_casters ? options.shadow_size : 0);
+  ShadowAtlasOptions atlas_options{options.shadow_size, options.texels_by_power};
+  r.find_casters(scene, ShadowAtlas::has_large_maps(atlas_options));
   auto gbuffer = GBuffer::create(scene, r.casters_);
   if (!gbuffer) return gbuffer.error();
-  ShadowAtlasOptions atlas_options{options.shadow_size, options.texels_by_power};
   r.fitted_scene_ = r.casters_.scene;
-  if (ShadowAtlas::has_large_maps(atlas_options))
-    r.fine_casters_ = find_casters(scene, options.simplify_casters ? kLargestMap * options.shadow_size : 0);
   auto atlas = ShadowAtlas::create(r.casters_, r.fine_casters_, atlas_options);
   if (!atlas) return atlas.error();
   auto cutouts = CutoutCasters::create(scene, r.casters_, *gbuffer);
@@ -107,6 +105,15 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   const int width = std::exchange(r.options_.width, 0);
   if (Status s = r.resize(width, options.height); !s) return s.error();
   return r;
+}
+
+void Renderer::find_casters(const Scene& scene, bool fine_ones) {
+  const int size = options_.simplify_casters ? options_.shadow_size : 0;
+  std::vector<int> sizes = {size};
+  if (fine_ones) sizes.insert(sizes.begin(), kLargestMap * size);
+  auto levels = render::find_casters(scene, sizes);
+  casters_ = std::move(levels.back());
+  if (fine_ones) fine_casters_ = std::move(levels.front());
 }
 
 void Renderer::move(const Scene& scene, std::span<const std::size_t> moved) {

@@ -106,6 +106,7 @@ class Renderer {
     GLuint framebuffer;
   };
   [[nodiscard]] Shown shown() const;
+  void find_casters(const Scene& scene, bool fine_ones);
   Status resize(Sums& sums) const;
   Status make_unshadowed();
   Status render_samples(std::span<LightRow> rows, const LightSet& lights, const SceneCamera& camera,

@@ -372,7 +372,7 @@ Status run_session(const Options& chosen, const std::atomic<bool>& stop) {
   if (!scene) return scene.error();
   if (scene->triangles() > kManyTriangles)
     say(options.scene.string() + ": " + std::to_string(scene->triangles()) +
-        " triangles; simpler ones for their shadows are looked for, about ten seconds a million");
+        " triangles; simpler ones for their shadows are looked for, about five seconds a million");
   auto camera = choose_camera(*scene, options);
   if (!camera) return camera.error();
   auto source = open_lights(options);

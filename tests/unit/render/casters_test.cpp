@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <random>
 
 #include "render/caster_mesh.h"
 #include "render/light_rows.h"
+#include "render/surface_distance.h"
 #include "tests/support/test_scene.h"
 
 namespace lightwell::render {
@@ -191,6 +194,97 @@ TEST(SimplifiedCasters, NoPointOfEitherSurfaceIsFartherFromTheOtherThanTheirShar
     EXPECT_LE(farthest(full, fewer), bound) << size;
     EXPECT_LE(farthest(fewer, full), bound) << size;
   }
+}
+
+// A closed ball of waves, of 4 r (r − 1) triangles by rings of 2 r sectors: large enough to be simplified by patches.
+struct Ball {
+  std::vector<Vec3f> positions;
+  std::vector<std::uint32_t> triangles;
+};
+Ball wavy_ball(std::uint32_t rings) {
+  Ball ball;
+  const std::uint32_t sectors = 2 * rings;
+  const auto add = [&](double polar, double around) {
+    const double radius = 1 + 0.03 * std::sin(9 * polar) * std::cos(7 * around) * std::sin(polar);
+    ball.positions.push_back((radius * Vec3d(std::sin(polar) * std::cos(around), std::cos(polar),
+                                             std::sin(polar) * std::sin(around)))
+                                 .cast<float>());
+  };
+  add(0, 0);
+  for (std::uint32_t r = 1; r < rings; ++r)
+    for (std::uint32_t s = 0; s < sectors; ++s) add(kPi * r / rings, 2 * kPi * s / sectors);
+  add(kPi, 0);
+  const auto at = [&](std::uint32_t r, std::uint32_t s) {
+    if (r == 0) return 0u;
+    if (r == rings) return static_cast<std::uint32_t>(ball.positions.size() - 1);
+    return 1 + (r - 1) * sectors + s % sectors;
+  };
+  for (std::uint32_t r = 0; r < rings; ++r)
+    for (std::uint32_t s = 0; s < sectors; ++s) {
+      if (r > 0) ball.triangles.insert(ball.triangles.end(), {at(r, s), at(r, s + 1), at(r + 1, s)});
+      if (r + 1 < rings)
+        ball.triangles.insert(ball.triangles.end(), {at(r, s + 1), at(r + 1, s + 1), at(r + 1, s)});
+    }
+  return ball;
+}
+
+// How often each edge is run along, one way less the other.
+bool every_edge_is_run_both_ways(const std::vector<std::uint32_t>& triangles) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const std::uint32_t a = triangles[i];
+    const std::uint32_t b = triangles[i % 3 == 2 ? i - 2 : i + 1];
+    balance[std::minmax(a, b)] += a < b ? 1 : -1;
+  }
+  return std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
+}
+
+// The distance of a random point of `from` to the nearest triangle of `to`, one by one; the worst of some.
+float worst_of_some(const Ball& ball, std::span<const std::uint32_t> from,
+                    std::span<const std::uint32_t> to) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> part(0, 1);
+  float worst = 0;
+  for (int i = 0; i < 600; ++i) {
+    const std::size_t t = 3 * (random() % (from.size() / 3));
+    float u = part(random), v = part(random);
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    const Vec3f p = (1 - u - v) * ball.positions[from[t]] + u * ball.positions[from[t + 1]] +
+                    v * ball.positions[from[t + 2]];
+    float nearest = std::numeric_limits<float>::max();
+    for (std::size_t n = 0; n < to.size(); n += 3)
+      nearest = std::min(nearest, distance_to_triangle(p, ball.positions[to[n]], ball.positions[to[n + 1]],
+                                                       ball.positions[to[n + 2]]));
+    worst = std::max(worst, nearest);
+  }
+  return worst;
+}
+
+TEST(SimplifiedCasters, LargeMeshesKeepTheirDistanceAndStayClosedFromLevelToLevel) {
+  const Ball ball = wavy_ball(130);
+  ASSERT_GT(ball.triangles.size(), 3u * 60'000);
+  ASSERT_TRUE(is_closed(ball.triangles));
+  const auto fine = simplify(ball.triangles, ball.positions, 0.002f);
+  const auto coarse = simplify(fine, ball.positions, 0.008f, 0.002f);
+  // Waves of amplitude 0.03 and 9 and 7 to the round bend by up to 2.5: facets that lie 0.002 off reach over 0.08, and
+  // 4π / (0.08²/2) are 4000; patches, whose borders stay at first, leave six times as many of the 67,000.
+  EXPECT_LT(fine.size(), ball.triangles.size() / 2);
+  EXPECT_LT(coarse.size(), fine.size() / 2);
+  for (const auto& [fewer, bound] : {std::pair(&fine, 0.002f), std::pair(&coarse, 0.008f)}) {
+    EXPECT_TRUE(every_edge_is_run_both_ways(*fewer));
+    const float most = bound * (1 + 1e-4f);  // single precision of the measure
+    EXPECT_LE(worst_of_some(ball, ball.triangles, *fewer), most);
+    EXPECT_LE(worst_of_some(ball, *fewer, ball.triangles), most);
+  }
+}
+
+TEST(SimplifiedCasters, OfSeveralLevelsTheLargestMapsAreThoseOfOne) {
+  Scene scene;
+  add_sphere(scene, {0, 1, 0}, 0.5f, lambertian(Rgb::Ones()));
+  const auto levels = find_casters(scene, std::array{1024, 256});
+  ASSERT_EQ(levels.size(), 2u);
+  EXPECT_EQ(levels[0].indices, find_casters(scene, 1024).indices);
+  EXPECT_EQ(levels[1].indices, find_casters(scene, 256).indices);
 }
 
 TEST(SurfacesStayTogether, WithinTheirDistanceAndNotBelowIt) {

@@ -8,6 +8,7 @@
 #include "render/caster_mesh.h"
 #include "render/casters.h"
 #include "render/gltf_scene.h"
+#include "render/surface_distance.h"
 #include "tests/support/gltf_document.h"
 #include "tests/support/temporary_folder.h"
 
