@@ -11,14 +11,13 @@
 #include <xf86drm.h>
 #include <xf86drmMode.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "render/egl_es31.h"
+#include "render/kms_output.h"
 
 namespace lightwell::render {
 namespace {
@@ -36,39 +35,23 @@ Error failure(const std::filesystem::path& device, const std::string& what) {
   return {ErrorKind::failed, "screen of " + device.string() + ": " + what};
 }
 
-struct Output {
-  std::uint32_t connector = 0;
-  std::uint32_t crtc = 0;
-  drmModeModeInfo mode{};
-};
-
-// A display controller that can drive the connector; 0: none.
-std::uint32_t crtc_for(int device, const drmModeRes& resources, const drmModeConnector& connector) {
-  for (int i = 0; i < connector.count_encoders; ++i) {
-    const Encoder encoder(drmModeGetEncoder(device, connector.encoders[i]));
-    if (!encoder) continue;
-    for (int k = 0; k < resources.count_crtcs; ++k)
-      if ((encoder->possible_crtcs >> k & 1u) != 0) return resources.crtcs[k];
-  }
-  return 0;
-}
-
-// crtc 0: no screen is connected.
-Output find_output(int device) {
+KmsTable read_table(int device) {
+  KmsTable table;
   const Resources resources(drmModeGetResources(device));
-  if (!resources) return {};
+  if (!resources) return table;
+  table.controllers.assign(resources->crtcs, resources->crtcs + resources->count_crtcs);
   for (int i = 0; i < resources->count_connectors; ++i) {
     const Connector connector(drmModeGetConnector(device, resources->connectors[i]));
-    if (!connector || connector->connection != DRM_MODE_CONNECTED || connector->count_modes == 0) continue;
-    const std::span modes(connector->modes, static_cast<std::size_t>(connector->count_modes));
-    const auto preferred = std::find_if(modes.begin(), modes.end(), [](const drmModeModeInfo& mode) {
-      return (mode.type & DRM_MODE_TYPE_PREFERRED) != 0;
-    });
-    const Output output{connector->connector_id, crtc_for(device, *resources, *connector),
-                        preferred != modes.end() ? *preferred : modes[0]};
-    if (output.crtc != 0) return output;
+    if (!connector) continue;
+    KmsTable::Connector& entry = table.connectors.emplace_back();
+    entry.id = connector->connector_id;
+    entry.connected = connector->connection == DRM_MODE_CONNECTED;
+    entry.modes.assign(connector->modes, connector->modes + connector->count_modes);
+    for (int k = 0; k < connector->count_encoders; ++k)
+      if (const Encoder encoder(drmModeGetEncoder(device, connector->encoders[k])); encoder)
+        entry.encoder_controllers.push_back(encoder->possible_crtcs);
   }
-  return {};
+  return table;
 }
 
 class Screen final : public KmsScreen {
@@ -95,11 +78,12 @@ class Screen final : public KmsScreen {
   }
 
   Status start() {
-    output_ = find_output(device_);
-    if (output_.crtc == 0) return failure(name_, "none is connected");
+    const auto output = choose_output(read_table(device_));
+    if (!output) return failure(name_, output.error().message);
+    output_ = *output;
     if (drmSetMaster(device_) != 0)
       return failure(name_, "another program has it, perhaps a desktop; a window works there");
-    before_.reset(drmModeGetCrtc(device_, output_.crtc));
+    before_.reset(drmModeGetCrtc(device_, output_.controller));
     gbm_ = gbm_create_device(device_);
     if (gbm_ == nullptr) return failure(name_, "its driver has no GBM");
     surface_ = gbm_surface_create(gbm_, output_.mode.hdisplay, output_.mode.vdisplay, kFormat,
@@ -121,8 +105,8 @@ class Screen final : public KmsScreen {
     if (!buffer) return buffer.error();
     const int failed =
         shown_ == nullptr
-            ? drmModeSetCrtc(device_, output_.crtc, *buffer, 0, 0, &output_.connector, 1, &output_.mode)
-            : drmModePageFlip(device_, output_.crtc, *buffer, DRM_MODE_PAGE_FLIP_EVENT, &flipping_);
+            ? drmModeSetCrtc(device_, output_.controller, *buffer, 0, 0, &output_.connector, 1, &output_.mode)
+            : drmModePageFlip(device_, output_.controller, *buffer, DRM_MODE_PAGE_FLIP_EVENT, &flipping_);
     if (failed != 0) return failure(name_, std::strerror(errno));
     flipping_ = shown_ != nullptr;
     if (shown_ != nullptr) leaving_ = shown_;
@@ -215,7 +199,7 @@ class Screen final : public KmsScreen {
 
   std::filesystem::path name_;
   int device_;
-  Output output_;
+  KmsOutput output_;
   Crtc before_;
   gbm_device* gbm_ = nullptr;
   gbm_surface* surface_ = nullptr;
@@ -230,29 +214,26 @@ class Screen final : public KmsScreen {
 }  // namespace
 
 Result<std::unique_ptr<KmsScreen>> KmsScreen::open(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> devices;
-  std::error_code none;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, none))
-    if (entry.path().filename().string().starts_with("card")) devices.push_back(entry.path());
+  const std::vector<std::filesystem::path> devices = graphics_devices(folder);
   if (devices.empty())
     return Error{ErrorKind::failed, "no screen: " + folder.string() +
                                         " has no graphics device (its kernel driver is not loaded)"};
-  std::sort(devices.begin(), devices.end());
-  Error last;
+  std::string why;  // of each device, in one line
   for (const auto& name : devices) {
+    const auto refuse = [&](const Error& error) { why += (why.empty() ? "" : "; ") + error.message; };
     const int device = ::open(name.c_str(), O_RDWR | O_CLOEXEC);
     if (device < 0) {
-      last = failure(name, std::string("cannot open it: ") + std::strerror(errno) + " (group video)");
+      refuse(failure(name, std::string("cannot open it: ") + std::strerror(errno) + " (group video)"));
       continue;
     }
     auto screen = std::make_unique<Screen>(name, device);
     if (Status s = screen->start(); !s) {
-      last = s.error();
+      refuse(s.error());
       continue;
     }
     return std::unique_ptr<KmsScreen>(std::move(screen));
   }
-  return last;
+  return Error{ErrorKind::failed, why};
 }
 
 }  // namespace lightwell::render

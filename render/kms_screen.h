@@ -15,7 +15,7 @@ namespace lightwell::render {
 // When it goes, the screen shows again what it did before. One at a time.
 class KmsScreen {
  public:
-  // failed, in one line that names the device: none there, none that may be opened, no screen connected, another
+  // failed, in one line that says it of every device: none there, none that may be opened, no screen connected, another
   // program has the screen, no OpenGL ES 3.1.
   // folder: where the kernel shows its graphics devices
   static Result<std::unique_ptr<KmsScreen>> open(const std::filesystem::path& folder = "/dev/dri");
