@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "lighting/decomposition/best/bright_atoms.h"
+#include "lighting/decomposition/best/cut_watch.h"
 #include "lighting/decomposition/best/error_memory.h"
 #include "lighting/decomposition/best/error_prediction.h"
+#include "lighting/decomposition/best/map_in_parts.h"
 #include "lighting/decomposition/best/place_search.h"
 #include "lighting/decomposition/best/placed_lights.h"
 #include "lighting/decomposition/light_exchange.h"
@@ -25,28 +27,7 @@ constexpr double kMostFeedback = 0.9;
 constexpr double kHysteresis = 0.5;  // a light leaves for what is worth half as much again
 constexpr double kThreshold = 1e-5;
 
-// A cut: exchange finds its way from the lights of any map to those of any other, but slowly where lights are many, and
-// not at all where they are so few that each is worth much. Where the cost has doubled, and exchange has not mended it,
-// lights are placed as if there had been none, and taken if they cost so much less.
-constexpr double kStale = 2;
-constexpr double kStillStale = 1.3;  // after exchange
-constexpr double kWorthACut = 0.7;
-constexpr double kCostForgotten = 0.99;     // a frame: what it may double from
-constexpr int kMostLightsPlacedAnew = 256;  // they take 60 ms, more much longer
-
-// Few lights miss so much of any map that the cost says little of a change. The map's Lambertian moments do: where they
-// have changed by so much, other places are tried, and to take them it needs a cut or half of the cost.
-constexpr int kFewLights = 8;
-constexpr double kOtherMoments = 0.05;
-constexpr double kCutMoments = 0.3;
-constexpr double kWorthAPop = 0.5;
-
 constexpr int kImprovements = 5, kPasses = 4, kSteps = 50;
-
-void to_luminance(const ChannelRows& rgb, std::vector<double>& out, int n) {
-  for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k)
-    out[k] = 0.2126 * rgb[0][k] + 0.7152 * rgb[1][k] + 0.0722 * rgb[2][k];
-}
 
 }  // namespace
 
@@ -63,6 +44,7 @@ struct BestLights::State {
         search(n, static_cast<int>(atoms.x.size())),
         exchange(n, PlaceSearch::most_places(n)),
         tree(n),
+        cuts(n, atoms.capacity()),
         dark{powers.no_dark(), powers.no_dark(), powers.no_dark()},
         luminance_dark(powers.no_dark()) {
     const auto stride = static_cast<std::size_t>(powers.stride()) + placement_kernel::kLanes;
@@ -71,7 +53,6 @@ struct BestLights::State {
     for (auto* row : {&luminance_power, &still, &moving, &scratch}) row->assign(stride, 0);
     moved.reserve(static_cast<std::size_t>(n));
     place_rest.assign(search.place_points().x.size() + 4, 0);
-    if (n <= kFewLights) at_atoms.assign(atoms.x.size() + placement_kernel::kLanes, 0);
     predicted.assign(static_cast<std::size_t>(n), 0.0f);
     out.resize(static_cast<std::size_t>(n));
   }
@@ -91,6 +72,7 @@ struct BestLights::State {
   PlaceSearch search;
   LightExchange exchange;
   PersistentTree tree;
+  CutWatch cuts;
 
   bool placed = false;
   bool placed_exactly = false;  // a light an atom: there were no more atoms
@@ -98,35 +80,19 @@ struct BestLights::State {
   bool looked = false;          // at the atoms' nearest lights, as they stood before this frame's exchanges
   bool settling = false;        // one map until nothing pays any more
   bool grown = false;           // the tree
-  double cost_to_double = 0;    // of the cells
-  MomentVector placed_moments = MomentVector::Zero();
 
   std::vector<int> moved;
   std::array<LightPowers::Dark, 3> dark;
   LightPowers::Dark luminance_dark;
   ChannelRows power, potential,
       target;  // a light: its power, error_kernel with the map, and what powers are solved for
-  std::vector<double> luminance_power, still, moving, scratch, place_rest, at_atoms;
+  std::vector<double> luminance_power, still, moving, scratch, place_rest;
   Report report;
   std::vector<float> predicted;  // of the first lights up to an entry
   std::vector<DirectionalLight> out;
 
-  void map_potentials(int first, int last) { map_potentials(lights, first, last, potential); }
-  void map_potentials(const PlacedLights& at, int first, int last, ChannelRows& to) const {
-    at.potentials(atoms, atom_moments, first, last, to);
-    if (bright.all().empty()) return;
-    for (int i = first; i < last; ++i) {
-      const Rgbd of_bright = bright.potential(at.direction(i));
-      for (std::size_t c = 0; c < 3; ++c)
-        to[c][static_cast<std::size_t>(i)] += of_bright[static_cast<Eigen::Index>(c)];
-    }
-  }
-
-  [[nodiscard]] MomentMatrix all_moments() const {
-    MomentMatrix all = atom_moments;
-    bright.add_moments(all);
-    return all;
-  }
+  void map_potentials(int first, int last) { map_in_parts().potentials(lights, first, last, potential); }
+  [[nodiscard]] MapInParts map_in_parts() const { return {atoms, atom_moments, bright}; }
 
   // Placement works on whole atoms.
   std::vector<Vec3d> find_best_places() {
@@ -151,8 +117,7 @@ struct BestLights::State {
     place_at(found);
     snap_to_bright();
     placed = true;
-    cost_to_double = 0;
-    placed_moments = luminance_moments();
+    cuts.placed(map_in_parts());
   }
 
   // Powers of least cost in luminance, and each atom's light.
@@ -163,74 +128,15 @@ struct BestLights::State {
     looked = true;
   }
 
-  // Of the atoms' luminance among themselves: Σ atom · atom · k.
-  [[nodiscard]] double own_of_atoms() {
-    auto at = atoms.points();
-    at.count = atoms.count;
-    placement_kernel::kernels().potential(atoms.points(), atoms.luminance.data(), kernel_shares(), at,
-                                          at_atoms.data());
-    double own = moment_weight() * luminance_moments().squaredNorm();
-    for (std::size_t k = 0; k < static_cast<std::size_t>(atoms.count); ++k)
-      own += static_cast<double>(atoms.luminance[k]) * at_atoms[k];
-    return own;
-  }
-
-  // What lights leave to be shown wrongly. Of few lights twice the cost itself, own − Σ power · b; of many that is lost in
-  // rounding, and is told by how far atoms are from their lights.
-  [[nodiscard]] double left_wrong(const PlaceSearch& served, double own, const std::vector<double>& b,
-                                  const std::vector<double>& w) const {
-    if (count > kFewLights) return served.cell_cost(atoms, w);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) own -= w[i] * b[i];
-    return own;
-  }
-
-  [[nodiscard]] double left_wrong_at(const std::vector<Vec3d>& places, double own) const {
-    PlacedLights there(count);
-    for (int i = 0; i < count; ++i) there.set(i, places[static_cast<std::size_t>(i)]);
-    LightPowers of_there(count);
-    of_there.place(there.directions());
-    ChannelRows worth = potential;
-    map_potentials(there, 0, count, worth);
-    std::vector<double> b = still, w = luminance_power;
-    to_luminance(worth, b, count);
-    LightPowers::Dark none = of_there.no_dark();
-    of_there.solve(b, none, w);
-    PlaceSearch served(count, atoms.capacity());
-    served.look(atoms, there, true);
-    return left_wrong(served, own, b, w);
-  }
-
-  [[nodiscard]] MomentVector luminance_moments() const {
-    return all_moments() * Eigen::Vector3d(0.2126, 0.7152, 0.0722);
-  }
-
-  // Relative, since lights were placed or other places were last refused.
-  [[nodiscard]] double change_of_moments() const {
-    const double before = placed_moments.norm();
-    return before > 0 ? (luminance_moments() - placed_moments).norm() / before : 1;
-  }
-
-  // True where the map may have become another one. served: serve_luminance
-  [[nodiscard]] bool looks_cut(double times) const {
-    if (count > kMostLightsPlacedAnew) return false;
-    if (count <= kFewLights) return change_of_moments() > kOtherMoments;
-    return search.cell_cost(atoms, luminance_power) > times * cost_to_double;
-  }
+  // serve_luminance is done.
+  [[nodiscard]] CutWatch::Serving serving() const { return {search, still, luminance_power}; }
 
   void place_anew_after_cut() {
     serve_luminance();
-    if (!looks_cut(kStillStale)) return;
-    const bool few = count <= kFewLights;
-    const double own = few ? own_of_atoms() : 0;
-    const double cost = left_wrong(search, own, still, luminance_power);
-    const double worth = few && change_of_moments() < kCutMoments ? kWorthAPop : kWorthACut;
+    if (!cuts.is_still_cut(map_in_parts(), serving())) return;
+    cuts.weigh(map_in_parts(), serving());
     const std::vector<Vec3d> found = find_best_places();
-    if (left_wrong_at(found, own) < worth * cost) {
-      start(found);
-      return;
-    }
-    cost_to_double = cost;
-    placed_moments = luminance_moments();
+    if (cuts.is_worth_placing(found, map_in_parts(), serving())) start(found);
   }
 
   void exchange_lights() {
@@ -263,7 +169,7 @@ struct BestLights::State {
     at.count = search.place_points().count;
     placement_kernel::kernels().potential(atoms.points(), atoms.luminance.data(), kernel_shares(), at,
                                           place_rest.data());
-    const MomentVector mean = luminance_moments();
+    const MomentVector mean = map_in_parts().luminance_moments();
     const auto places = search.places();
     for (std::size_t c = 0; c < places.size(); ++c)
       place_rest[c] += moment_weight() * lambertian_moments(places[c]).dot(mean);
@@ -308,7 +214,7 @@ struct BestLights::State {
 
   void show() {
     bright.give_back(atoms);
-    error.keep({atoms, all_moments(), lights, powers, power, potential});
+    error.keep({atoms, map_in_parts().moments(), lights, powers, power, potential});
     write_out();
   }
 
@@ -323,7 +229,7 @@ struct BestLights::State {
     if (!looked) search.look(atoms, lights, true);
     looked = false;
     const double cost = search.cell_cost(atoms, luminance_power);
-    cost_to_double = std::max(cost, kCostForgotten * cost_to_double);
+    cuts.shown(cost);
     predict_errors(atoms, cost, tree.costs(), predicted);
     const auto entries = tree.order();
     for (std::size_t k = 0; k < entries.size(); ++k) {
@@ -428,7 +334,7 @@ struct BestLights::State {
       error.scale_to(atoms);
       map_potentials(0, count);
       serve_luminance();
-      const bool may_be_cut = looks_cut(kStale);
+      const bool may_be_cut = cuts.may_be_cut(map_in_parts(), serving());
       exchange_lights();
       if (may_be_cut) place_anew_after_cut();
     }
