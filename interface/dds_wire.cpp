@@ -103,6 +103,8 @@ std::string check_light(const lightwell_Light& light, std::size_t index, bool ha
   if (has_parents && !rooted) return wrong("parent is not an earlier light");
   if (!(std::isfinite(light.predicted_error) && light.predicted_error >= 0))
     return wrong("predicted_error is not finite and >= 0");
+  if (!(light.angular_radius_rad >= 0 && light.angular_radius_rad <= static_cast<float>(kPi)))
+    return wrong("angular_radius_rad is outside 0 to pi");
   return {};
 }
 
@@ -149,6 +151,7 @@ std::string to_wire(const LightFrame& message, lightwell_LightFrame& wire, Wire<
     buffer[i].id = light.id;
     buffer[i].parent = light.parent;
     buffer[i].predicted_error = light.predicted_error;
+    buffer[i].angular_radius_rad = light.angular_radius_rad;
   }
   const auto count = static_cast<std::uint32_t>(buffer.size());
   wire.lights = {count, count, buffer.data(), false};
@@ -181,6 +184,7 @@ std::string from_wire(const lightwell_LightFrame& wire, LightFrame& message) {
     light.id = lights[i].id;
     light.parent = wire.has_parents ? lights[i].parent : -1;
     light.predicted_error = lights[i].predicted_error;
+    light.angular_radius_rad = lights[i].angular_radius_rad;
   }
   message.harmonics.resize(harmonics.size() / 3);
   for (std::size_t i = 0; i < harmonics.size(); ++i)

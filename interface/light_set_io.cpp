@@ -54,6 +54,11 @@ DirectionalLight light_from_json(const JsonFields& fields, std::size_t index) {
     if (!(error >= 0 && error <= kMostFloat)) fields.fail("predicted_error", "is below 0 or no float");
     light.predicted_error = static_cast<float>(error);
   }
+  if (fields.has("angular_radius_rad")) {
+    const double radius = fields.number("angular_radius_rad");
+    if (!(radius >= 0 && radius <= kPi)) fields.fail("angular_radius_rad", "is outside 0 to pi");
+    light.angular_radius_rad = static_cast<float>(radius);
+  }
   return light;
 }
 
@@ -100,6 +105,7 @@ std::string light_set_to_json(const LightSet& set, bool one_line) {
     if (set.has_parents) value["parent"] = light.parent;
     if (light.id != 0) value["id"] = light.id;
     if (light.predicted_error > 0) value["predicted_error"] = light.predicted_error;
+    if (light.angular_radius_rad > 0) value["angular_radius_rad"] = light.angular_radius_rad;
     text += separator + line + value.dump();
     separator = ",";
   }

@@ -9,6 +9,7 @@
 #include "lighting/decomposition/best/cut_watch.h"
 #include "lighting/decomposition/best/error_memory.h"
 #include "lighting/decomposition/best/error_prediction.h"
+#include "lighting/decomposition/best/light_sizes.h"
 #include "lighting/decomposition/best/map_in_parts.h"
 #include "lighting/decomposition/best/place_search.h"
 #include "lighting/decomposition/best/placed_lights.h"
@@ -45,6 +46,7 @@ struct BestLights::State {
         exchange(n, PlaceSearch::most_places(n)),
         tree(n),
         cuts(n, atoms.capacity()),
+        sizes(n),
         dark{powers.no_dark(), powers.no_dark(), powers.no_dark()},
         luminance_dark(powers.no_dark()) {
     const auto stride = static_cast<std::size_t>(powers.stride()) + placement_kernel::kLanes;
@@ -73,6 +75,7 @@ struct BestLights::State {
   LightExchange exchange;
   PersistentTree tree;
   CutWatch cuts;
+  LightSizes sizes;
 
   bool placed = false;
   bool placed_exactly = false;  // a light an atom: there were no more atoms
@@ -104,6 +107,7 @@ struct BestLights::State {
 
   void place_at(const std::vector<Vec3d>& found) {
     for (int i = 0; i < count; ++i) lights.set(i, found[static_cast<std::size_t>(i)]);
+    sizes.forget();
     powers.place(lights.directions());
     grown = looked = false;
     map_potentials(0, count);
@@ -156,6 +160,7 @@ struct BestLights::State {
     for (const auto& [light, place] : pairs) {
       moved.push_back(light);
       lights.set(light, places[static_cast<std::size_t>(place)]);
+      sizes.forget(light);
       sound = powers.move(light, lights.directions()) && sound;
       map_potentials(light, light + 1);
       error.look_from(lights, light);
@@ -228,6 +233,7 @@ struct BestLights::State {
     grown = true;
     if (!looked) search.look(atoms, lights, true);
     looked = false;
+    sizes.follow(atoms, search);
     const double cost = search.cell_cost(atoms, luminance_power);
     cuts.shown(cost);
     predict_errors(atoms, cost, tree.costs(), predicted);
@@ -242,6 +248,7 @@ struct BestLights::State {
       light.id = lights.id(i);
       light.parent = entries[k].parent;
       light.predicted_error = predicted[k];
+      light.angular_radius_rad = sizes.radius_rad(i);
     }
   }
 
@@ -307,6 +314,10 @@ struct BestLights::State {
       out[k] = {lights.direction(i).cast<float>().normalized(), Rgb::Zero(), -1, lights.id(i)};
       for (std::size_t c = 0; c < 3; ++c)
         out[k].illuminance[static_cast<Eigen::Index>(c)] = static_cast<float>(power[c][k] * atoms.scale);
+      SecondMoment of_atom;
+      if (i < atoms.count)
+        of_atom.add(static_cast<double>(atoms.luminance[k]), static_cast<double>(atoms.solid_angle_sr[k]), 0);
+      out[k].angular_radius_rad = of_atom.disc_radius_rad();
     }
     out = progressive_order(out);
   }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "lighting/decomposition/angular_radius.h"
 #include "lighting/decomposition/best_lights.h"
 #include "lighting/decomposition/cell_powers.h"
 #include "lighting/decomposition/kollig_keller.h"
@@ -212,6 +213,7 @@ Result<LightSet> decompose(const PolarMap& map, Method method, int count, const 
   keep_inside(map.grid, set.lights);
   if (all->powers == Powers::cells) set_cell_powers(map, set.lights);
   if (all->powers == Powers::equal) set_equal_powers(map, set.lights);
+  set_angular_radii(map, set.lights);
   const Order order = order_of(entry(method).order, all->powers);
   set.has_parents = order != Order::sequence;
   if (order == Order::none) set.lights = as_tree(set.lights);

@@ -25,6 +25,13 @@ class PlaceSearch {
   [[nodiscard]] std::span<const Vec3d> places() const { return places_; }
   [[nodiscard]] const Atoms& place_points() const { return place_points_; }
 
+  // f(atom, its light, their distance) for every atom that was looked at.
+  template <class F>
+  void for_each_atom(const F& f) const {
+    for (auto k = static_cast<std::size_t>(begin_); k < static_cast<std::size_t>(end_); ++k)
+      f(k, static_cast<std::size_t>(nearest_[k]), distance_[k]);
+  }
+
   // What the lights leave to be shown wrongly, in luminance: Σ atom · power of its light · their distance, over the
   // atoms that were looked at. power: luminance
   [[nodiscard]] double cell_cost(const Atoms& atoms, std::span<const double> power) const noexcept;
