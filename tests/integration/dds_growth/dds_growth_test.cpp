@@ -49,8 +49,8 @@ TEST_F(NextVersion, WriterIsUnderstoodByTodaysReader) {
   const auto reader = LightReader::create(domain_).value();
   const dds_entity_t writer = dds_create_writer(participant_, topic_, qos_, nullptr);
   ASSERT_GT(writer, 0);
-  lightwell_next_Light lights[2] = {{{0, 1, 0}, {1, 2, 3}, 11, -1, 0.25f, 0.5f},
-                                    {{1, 0, 0}, {4, 5, 6}, 12, 0, 0.125f, 0.25f}};
+  lightwell_next_Light lights[2] = {{{0, 1, 0}, {1, 2, 3}, 11, -1, 0.25f, 0.5f, 7},
+                                    {{1, 0, 0}, {4, 5, 6}, 12, 0, 0.125f, 0.25f, 8}};
   float zones[3] = {7, 8, 9};
   lightwell_next_LightFrame sent{};
   std::strcpy(sent.probe, "next");
@@ -78,6 +78,7 @@ TEST_F(NextVersion, WriterIsUnderstoodByTodaysReader) {
   EXPECT_EQ(received.lights[1].id, 12u);
   EXPECT_EQ(received.lights[1].parent, 0);
   EXPECT_EQ(received.lights[1].predicted_error, 0.125f);
+  EXPECT_EQ(received.lights[1].angular_radius_rad, 0.25f);
 }
 
 TEST_F(NextVersion, ReaderUnderstandsTodaysWriterAndFindsNewMembersEmpty) {
@@ -90,7 +91,8 @@ TEST_F(NextVersion, ReaderUnderstandsTodaysWriterAndFindsNewMembersEmpty) {
                   .illuminance = {4, 5, 6},
                   .parent = -1,
                   .id = 12,
-                  .predicted_error = 0.25f}};
+                  .predicted_error = 0.25f,
+                  .angular_radius_rad = 0.125f}};
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   void* sample = nullptr;
   dds_sample_info_t info{};
@@ -109,7 +111,8 @@ TEST_F(NextVersion, ReaderUnderstandsTodaysWriterAndFindsNewMembersEmpty) {
   ASSERT_EQ(received.lights._length, 1u);
   EXPECT_EQ(received.lights._buffer[0].id, 12u);
   EXPECT_EQ(received.lights._buffer[0].predicted_error, 0.25f);
-  EXPECT_EQ(received.lights._buffer[0].angular_radius_rad, 0);
+  EXPECT_EQ(received.lights._buffer[0].angular_radius_rad, 0.125f);
+  EXPECT_EQ(received.lights._buffer[0].distance_m, 0);
   EXPECT_EQ(received.zones._length, 0u);
   dds_return_loan(reader, &sample, count);
 }

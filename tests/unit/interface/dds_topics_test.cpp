@@ -56,7 +56,8 @@ LightFrame example_lights(std::uint64_t number, std::size_t count = 3) {
                             .illuminance = {10 + angle, 20, 30},
                             .parent = static_cast<std::int32_t>(i) - 1,
                             .id = static_cast<std::uint32_t>(7 * i),
-                            .predicted_error = i == 0 ? 0 : 0.3f / angle});
+                            .predicted_error = i == 0 ? 0 : 0.3f / angle,
+                            .angular_radius_rad = 0.01f * angle});
   }
   return frame;
 }
@@ -82,6 +83,7 @@ void expect_same(const LightFrame& a, const LightFrame& b) {
     EXPECT_EQ(a.lights[i].parent, b.lights[i].parent);
     EXPECT_EQ(a.lights[i].id, b.lights[i].id);
     EXPECT_EQ(a.lights[i].predicted_error, b.lights[i].predicted_error);
+    EXPECT_EQ(a.lights[i].angular_radius_rad, b.lights[i].angular_radius_rad);
   }
 }
 

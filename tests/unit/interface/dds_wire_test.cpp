@@ -20,7 +20,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // A good frame of two lights as a stranger would send it; the tests spoil one thing each.
 struct Lights {
-  lightwell_Light lights[2] = {{{0, 1, 0}, {1, 2, 3}, 1, -1, 0.5f}, {{1, 0, 0}, {1, 2, 3}, 2, 0, 0}};
+  lightwell_Light lights[2] = {{{0, 1, 0}, {1, 2, 3}, 1, -1, 0.5f, 0.1f}, {{1, 0, 0}, {1, 2, 3}, 2, 0, 0, 0}};
   float harmonics[75] = {1, 2, 3};
   lightwell_LightFrame frame{};
   Lights() {
@@ -93,6 +93,9 @@ TEST(DdsWire, MalformedLightsAreRefusedAndLeaveTheMessageAlone) {
       [](Lights& l) { l.lights[1].predicted_error = kNan; },
       [](Lights& l) { l.lights[1].predicted_error = kInfinity; },
       [](Lights& l) { l.lights[1].predicted_error = -1e-3f; },
+      [](Lights& l) { l.lights[1].angular_radius_rad = kNan; },
+      [](Lights& l) { l.lights[1].angular_radius_rad = -1e-3f; },
+      [](Lights& l) { l.lights[1].angular_radius_rad = 3.2f; },
       [](Lights& l) { l.frame.ambient[0] = kNan; },
       [](Lights& l) { l.frame.header.total_illuminance[0] = -1; },
       [](Lights& l) { l.frame.header.measured_part = 1.5f; },

@@ -29,6 +29,7 @@ LightSet random_set(bool parents) {
     for (int c = 0; c < 3; ++c) light.illuminance[c] = std::pow(10.0f, exponent(generator));
     light.parent = parents ? i - 1 : -1;
     light.id = static_cast<std::uint32_t>(generator());
+    light.angular_radius_rad = 1.0f / static_cast<float>(1 + i);
     set.lights.push_back(light);
   }
   set.total_illuminance = {1.0f / 3, 1e25f, 1e-30f};
@@ -54,6 +55,7 @@ TEST(LightSetIo, EveryFloatComesBackBitForBit) {
         EXPECT_TRUE((back.lights[i].illuminance == set.lights[i].illuminance).all());
         EXPECT_EQ(back.lights[i].parent, set.lights[i].parent);
         EXPECT_EQ(back.lights[i].id, set.lights[i].id);
+        EXPECT_EQ(back.lights[i].angular_radius_rad, set.lights[i].angular_radius_rad);
       }
     }
   }
@@ -107,6 +109,8 @@ TEST(LightSetIo, BadInputIsOneLineThatNamesFileAndField) {
       {light(R"("direction":[0,1,0],"illuminance":[1,1,1],"parent":0)"), "lights[0].parent"},
       {light(R"("direction":[0,1,0],"illuminance":[1,1,1],"parent":18446744073709551615)"),
        "lights[0].parent"},
+      {light(R"("direction":[0,1,0],"illuminance":[1,1,1],"angular_radius_rad":-1)"),
+       "lights[0].angular_radius_rad"},
       {head + R"("lights":[],"ambient":[1]})", "ambient"},
       {R"({"schema":"lightwell.lights/1","coverage":"sphere","lights":[]})", "total_illuminance"},
       {"\xff\xfe", "JSON"},
