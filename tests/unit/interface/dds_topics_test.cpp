@@ -57,7 +57,7 @@ LightFrame example_lights(std::uint64_t number, std::size_t count = 3) {
                             .parent = static_cast<std::int32_t>(i) - 1,
                             .id = static_cast<std::uint32_t>(7 * i),
                             .predicted_error = i == 0 ? 0 : 0.3f / angle,
-                            .angular_radius_rad = 0.01f * angle});
+                            .angular_radius_rad = 0.1f / (1 + angle)});
   }
   return frame;
 }
