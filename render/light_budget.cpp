@@ -3,15 +3,13 @@
 #include "render/light_budget.h"
 
 #include <algorithm>
-#include <vector>
+#include <cmath>
 
-#include "lighting/median.h"
+#include "render/fade_lights.h"
 
 namespace lightwell::render {
 namespace {
 
-// Between these shares of the frame's time nothing changes.
-constexpr double kFull = 0.95, kLoose = 0.75;
 // Lights are given up only where the error stays this far below what is allowed: else their number would flutter.
 constexpr double kSafe = 0.9;
 
@@ -19,18 +17,31 @@ std::size_t step(std::size_t count) {
   return std::max<std::size_t>(1, count / 16);
 }
 
+// Of lights that carry no prediction, n of them: what lights of best err in the judged scenes (8 to 216 of them).
+double usual_error(double lights) {
+  return 0.9 * std::pow(lights, -0.8);
+}
+
+// What maps of 256² add in the judged scenes, as the square root of a sum of squares (docs/decisions/046); their error is
+// that of a texel's blur.
+double map_error(double texels, int shadow_size) {
+  return 0.006 * 256 / shadow_size / std::sqrt(texels);
+}
+
+double light_error(const LightSet& all, double lights) {
+  const auto predicted = [&](std::size_t n) {
+    const auto error =
+        static_cast<double>(all.lights[std::clamp<std::size_t>(n, 1, all.lights.size()) - 1].predicted_error);
+    return error > 0 ? error : usual_error(static_cast<double>(std::max<std::size_t>(n, 1)));
+  };
+  const auto fewer = static_cast<std::size_t>(lights);
+  return std::lerp(predicted(fewer), predicted(fewer + 1), lights - static_cast<double>(fewer));
+}
+
 }  // namespace
 
-// From the median of the last frames: one slow frame is no reason.
-std::size_t LightBudget::affordable(std::size_t now, std::size_t all) const {
-  if (!goals_.fps || frames_ < 3) return now;
-  const auto known = static_cast<std::size_t>(std::min<int>(frames_, static_cast<int>(ms_.size())));
-  const double used =
-      median(std::vector<double>(ms_.begin(), ms_.begin() + static_cast<std::ptrdiff_t>(known))) *
-      *goals_.fps / 1000;
-  if (used > kFull) return now - std::min(now - 1, step(now));
-  if (used < kLoose) return std::min(all, now + step(now));
-  return now;
+LightBudget::LightBudget(const Goals& goals) : goals_(goals) {
+  if (goals_.fps) control_.emplace(*goals_.fps);
 }
 
 std::size_t LightBudget::needed(const LightSet& all, std::size_t now) const {
@@ -52,26 +63,25 @@ const LightSet& LightBudget::choose(const LightSet& all) {
   const bool dark = std::none_of(all.lights.begin(), all.lights.end(),
                                  [](const auto& light) { return (light.illuminance > 0).any(); });
   if (dark) return all;
-  std::size_t count = affordable(count_ == 0 ? size : std::min(count_, size), size);
   lacks_prediction_ =
       goals_.max_error && std::all_of(all.lights.begin(), all.lights.end(),
                                       [](const auto& light) { return !(light.predicted_error > 0); });
-  if (goals_.max_error && !lacks_prediction_) {
-    const std::size_t least = needed(all, count_);
-    count = goals_.fps ? std::min(count, least) : least;
-  }
-  if (count != count_) frames_ = 0;
-  count_ = count;
-  if (count < size) {
-    folded_ = take_lights(all, count);
+  if (goals_.max_error && !lacks_prediction_)
+    count_ = needed(all, count_);
+  else
+    count_ = size;
+  Quality quality{static_cast<double>(count_), 1};
+  const auto error = [&](const Quality& q) {
+    return std::hypot(light_error(all, q.lights), map_error(q.texels, goals_.shadow_size));
+  };
+  if (control_) quality = control_->choose(quality.lights, error);
+  texels_ = quality.texels;
+  expected_error_ = error(quality);
+  if (quality.lights < static_cast<double>(size)) {
+    folded_ = fade_lights(all, quality.lights);
     chosen_ = &folded_;
   }
   return *chosen_;
-}
-
-void LightBudget::frame_took(double ms) {
-  ms_[static_cast<std::size_t>(frames_) % ms_.size()] = ms;
-  ++frames_;
 }
 
 }  // namespace lightwell::render

@@ -88,7 +88,8 @@ Parsed parse_options(int argc, const char* const* argv) {
                  "most lights to render, each with its map (default: all; live 72)")
       ->check(whole_numbers(1, 100000));
   app.add_option("--target-fps", options.target_fps,
-                 "holds this frame rate by taking fewer of the lights, the least urgent left out first")
+                 "holds this frame rate by fewer of the lights, the least urgent left out first, and smaller "
+                 "shadow maps")
       ->check(numbers_above_0_to(1000, "above 0 to 1000 frames a second"));
   app.add_option("--max-error", options.max_error,
                  "takes the fewest lights whose predicted shadow error (relative) is below this; method best "

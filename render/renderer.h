@@ -60,6 +60,8 @@ class Renderer {
   Status lay_over(const RadiancePicture& picture, int left, int bottom);
   void set_look(const Look& look) { tone_mapper_.set_look(look); }
   [[nodiscard]] double exposure_ev100() const { return tone_mapper_.exposure_ev100(); }
+  // Of the texels that the shadow maps' size asks for, in (0, 1].
+  void set_shadow_texels(double share) { atlas_.set_share(share); }
   // Light as if nothing cast shadows, or with them.
   Status set_shadows(bool on);
   // Bounds what casts shadows, but for what supports the scene; without such all that is seen.

@@ -5,6 +5,7 @@
 #include <time.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
@@ -59,7 +60,7 @@ class Session {
         source_(source),
         plates_(plates),
         tracking_(tracking),
-        budget_({options.target_fps, options.max_error}),
+        budget_({options.target_fps, options.max_error, options.shadow_size}),
         look_(options.look),
         show_probe_(options.probe),
         plate_white_cd_m2_(options.plate_white_cd_m2) {}
@@ -248,6 +249,7 @@ class Session {
       say("--max-error: these lights carry no prediction of their error (method best does); all are taken");
       said_no_prediction_ = true;
     }
+    renderer_->set_shadow_texels(budget_.texels());
     if (Status s = renderer_->render(lights, camera, source_.environment_turn_rad()); !s) return s;
     if (Status s = show_probe(camera); !s) return s;
     renderer_->tone_map(dt_s);
@@ -261,6 +263,7 @@ class Session {
     statistics_.lights = lights.lights.size();
     statistics_.predicted_error = lights.lights.empty() ? 0 : lights.lights.back().predicted_error;
     statistics_.shadow_maps = renderer_->shadow_maps();
+    if (options_.target_fps) statistics_.chosen = {budget_.texels(), budget_.expected_error()};
     const int number = frame_++;
     return write(number, true);
   }
@@ -331,10 +334,11 @@ class Session {
     n.frame_ms = last_ms_;
     n.lights = statistics_.lights;
     n.shadow_maps = statistics_.shadow_maps;
-    n.shadow_size = options_.shadow_size;
+    n.shadow_size = static_cast<int>(options_.shadow_size * std::sqrt(budget_.texels()));
     n.light_arrived = source_.ready();
     n.light_age = source_.age();
     n.predicted_error = statistics_.predicted_error;
+    if (options_.target_fps) n.expected_error = budget_.expected_error();
     n.ev100 = renderer_->exposure_ev100();
     n.ev_by_hand = look_.exposure_ev100.has_value();
     return n;

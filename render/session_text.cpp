@@ -34,6 +34,7 @@ std::vector<std::string> overlay_text(const ViewNumbers& n) {
       text("%zu lights, %zu shadow maps of %d", n.lights, n.shadow_maps, n.shadow_size)};
   if (const std::string light = light_text(n); !light.empty()) lines.push_back(light);
   if (n.predicted_error > 0) lines.push_back(text("predicted error of shadows %.2g", n.predicted_error));
+  if (n.expected_error > 0) lines.push_back(text("expected error at this frame rate %.2g", n.expected_error));
   lines.push_back(text("EV %.1f%s", n.ev100, n.ev_by_hand ? " by hand" : ""));
   lines.emplace_back("h: keys");
   return lines;

@@ -19,6 +19,7 @@ struct ViewNumbers {
   bool light_arrived = true;
   std::optional<std::chrono::nanoseconds> light_age;  // of live light
   double predicted_error = 0;                         // of the lights' shadows; 0: they carry none
+  double expected_error = 0;  // of the picture, where a frame rate is kept; 0: none is
   double ev100 = 0;
   bool ev_by_hand = false;
 };

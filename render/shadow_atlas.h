@@ -40,6 +40,8 @@ class ShadowAtlas {
 
   // Follows casters that moved; all maps are drawn anew.
   void move(const Casters& coarse, const Casters& fine);
+  // Of the texels that map_size asks for, in (0, 1]; nothing where all maps are equal.
+  void set_share(double share) { tiles_.set_share(share); }
   // Lights that stand together in the rows, their maps on one page, as many as a block of uniforms holds at most.
   struct Block {
     int page = 0;

@@ -108,8 +108,8 @@ std::vector<int> ShadowTiles::shares(std::span<const LightRow> rows) const {
   weights.reserve(rows.size());
   for (const LightRow& row : rows) weights.push_back(weight_of(row));
   const int average = map_size_ / unit_;
-  const double units =
-      std::min(static_cast<double>(rows.size()) * average * average, static_cast<double>(capacity()));
+  const double units = std::min(share_ * static_cast<double>(rows.size()) * average * average,
+                                static_cast<double>(capacity()));
   const int largest = average == 1
                           ? 1
                           : std::min(kLargestMap * average,

@@ -44,6 +44,8 @@ class ShadowTiles {
   [[nodiscard]] std::span<ShadowTile> tiles() { return tiles_; }
   [[nodiscard]] std::span<const ShadowTile> tiles() const { return tiles_; }
 
+  // Of the texels that map_size asks for, in (0, 1]: a light's map changes its side only where it is off by more than twice.
+  void set_share(double share) { share_ = share; }
   // Gives each of these rows, at most capacity(), its tile. Brings them into the order of their pages.
   void assign(std::span<LightRow> rows);
   // What casts is no longer what it was: all are stale.
@@ -59,6 +61,7 @@ class ShadowTiles {
   int map_size_ = 256;
   int unit_ = 64;
   int page_limit_ = 64;  // units
+  double share_ = 1;
   TilePages pages_;
   std::vector<ShadowTile> tiles_;
 };

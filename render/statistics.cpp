@@ -29,7 +29,7 @@ std::string Statistics::json() const {
     return percentile(frames, 0.5, [=](const F& f) { return f.passes.*time; });
   };
   const auto ms = [](const F& f) { return f.ms; };
-  const nlohmann::ordered_json report = {
+  nlohmann::ordered_json report = {
       {"frames", frames.size()},
       {"ms", {{"p50", percentile(frames, 0.5, ms)}, {"p99", percentile(frames, 0.99, ms)}}},
       {"cpu_ms", {{"p50", percentile(frames, 0.5, [](const F& f) { return f.cpu_ms; })}}},
@@ -45,6 +45,10 @@ std::string Statistics::json() const {
       {"predicted_error",
        predicted_error > 0 ? nlohmann::ordered_json(predicted_error) : nlohmann::ordered_json()},
       {"gl_renderer", gl_renderer}};
+  if (chosen)
+    report["chosen"] = {{"lights", lights},
+                        {"shadow_texels", chosen->shadow_texels},
+                        {"expected_error", chosen->expected_error}};
   return report.dump(2) + "\n";
 }
 

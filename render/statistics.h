@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,12 @@ struct Statistics {
   int shadow_size = 0;
   std::size_t triangles = 0;
   float predicted_error = 0;  // of the last lights' shadows; 0: they carry no prediction
+  // What --target-fps chose for the last frame.
+  struct Chosen {
+    double shadow_texels = 1;   // share of those that the maps' size asks for
+    double expected_error = 0;  // relative RMSE of the picture
+  };
+  std::optional<Chosen> chosen;
   std::string gl_renderer;
 
   // Passes are medians. A run without frames reports nulls.

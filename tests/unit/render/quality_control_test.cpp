@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/quality_control.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lightwell::render {
+namespace {
+
+// A machine without a clock: milliseconds of a frame, a light's shading, and its map's texels.
+struct Machine {
+  double fixed_ms, light_ms, texels_ms;
+  [[nodiscard]] double ms(const Quality& q) const {
+    return fixed_ms + q.lights * (light_ms + texels_ms * q.texels);
+  }
+};
+
+double error(const Quality& q) {
+  return std::hypot(0.9 * std::pow(q.lights, -0.8), 0.006 / std::sqrt(q.texels));
+}
+
+Quality run(QualityControl& control, const Machine& machine, double most, int frames,
+            double every_tenth = 1) {
+  Quality q;
+  for (int i = 0; i < frames; ++i) {
+    q = control.choose(most, error);
+    control.frame_took(machine.ms(q) * (i % 10 == 3 ? every_tenth : 1));
+  }
+  return q;
+}
+
+TEST(QualityControl, BeginsWithFewLightsAndGoesOnlySmallSteps) {
+  QualityControl control(25);
+  Quality before = control.choose(1000, error);
+  EXPECT_LE(before.lights, 16);
+  for (int i = 0; i < 2000; ++i) {
+    const Quality q = control.choose(1000, error);
+    // A light at a time fades over three frames, of many lights a forty-eighth of them.
+    EXPECT_LE(std::abs(q.lights - before.lights), std::max(1.0 / 3, before.lights / 48) * 1.01);
+    EXPECT_LE(std::abs(q.texels - before.texels), before.texels / 48 * 1.01);
+    before = q;
+    control.frame_took(Machine{2, 0.05, 0.05}.ms(q));
+  }
+  EXPECT_GT(before.lights, 100);
+}
+
+TEST(QualityControl, KeepsTheFrameTimeOnMachinesOfAnySpeedThroughHiccups) {
+  for (const double speed : {0.1, 1.0, 10.0}) {
+    QualityControl control(25);
+    const Machine machine{5 / speed, 0.5 / speed, 0.3 / speed};
+    const Quality q = run(control, machine, 400, 3000, 20);
+    EXPECT_LE(machine.ms(q), std::max(40.0, machine.ms({1, 1.0 / 16}))) << speed;
+    EXPECT_TRUE(machine.ms(q) >= 0.7 * 40 || (q.lights == 400 && q.texels == 1) || q.lights == 1) << speed;
+  }
+}
+
+TEST(QualityControl, FollowsAMachineThatGetsSlowerAndFasterAgain) {
+  QualityControl control(25);
+  const Machine fast{2, 0.1, 0.1}, slow{2, 1, 1};
+  const Quality first = run(control, fast, 500, 2000);
+  const Quality less = run(control, slow, 500, 2000);
+  EXPECT_LE(slow.ms(less), 40);
+  EXPECT_LT(less.lights, first.lights);
+  const Quality again = run(control, fast, 500, 3000);
+  EXPECT_GE(fast.ms(again), 0.7 * 40);
+}
+
+TEST(QualityControl, GivesUpWhatCostsTimeAndNotWhatIsFree) {
+  QualityControl dear_texels(25), free_texels(25);
+  const Quality of_dear = run(dear_texels, {2, 0.02, 1}, 200, 4000);
+  const Quality of_free = run(free_texels, {2, 1, 0.001}, 200, 4000);
+  EXPECT_LT(of_dear.texels, 0.5);
+  EXPECT_GT(of_free.texels, 2 * of_dear.texels);
+  EXPECT_GT(of_dear.lights, of_free.lights);
+}
+
+TEST(QualityControl, StaysWhereItIsOnceTheTimeFits) {
+  QualityControl control(25);
+  const Machine machine{5, 0.5, 0.3};
+  const Quality there = run(control, machine, 400, 3000);
+  for (int i = 0; i < 500; ++i) {
+    const Quality q = control.choose(400, error);
+    ASSERT_EQ(q.lights, there.lights);
+    ASSERT_EQ(q.texels, there.texels);
+    control.frame_took(machine.ms(q) * (1 + 0.02 * std::sin(i)));
+  }
+}
+
+TEST(QualityControl, OutOfReachLeavesOneLightOfTheLeastTexels) {
+  QualityControl control(1000);
+  const Quality q = run(control, {50, 1, 1}, 100, 3000);
+  EXPECT_EQ(q.lights, 1);
+  EXPECT_EQ(q.texels, 1.0 / 16);
+}
+
+TEST(QualityControl, NeverTakesMoreLightsThanThereAre) {
+  QualityControl control(25);
+  run(control, {1, 0.01, 0.01}, 300, 2000);
+  EXPECT_LE(control.choose(5, error).lights, 300);
+  const Quality q = run(control, {1, 0.01, 0.01}, 5, 1000);
+  EXPECT_EQ(q.lights, 5);
+}
+
+}  // namespace
+}  // namespace lightwell::render
