@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -76,6 +77,29 @@ TEST_F(Command, WritesFramesNumberedFromZeroAndTheStatisticsOfTheContract) {
 }
 
 // An environment of uniform radiance 1: the open ground receives π from the hemisphere.
+// A frame in a hundred seconds is what any machine affords.
+TEST_F(Command, AFrameRateIsKeptFromFewLightsOnAndTheErrorOfItsChoiceIsTold) {
+  std::vector<std::pair<Vec3f, Rgb>> lights;
+  for (int i = 0; i < 24; ++i) {
+    const float around = 0.9f * static_cast<float>(i);
+    lights.emplace_back(Vec3f(std::sin(around), 1, std::cos(around)).normalized(), Rgb::Constant(100));
+  }
+  ASSERT_TRUE(write_light_set(lights_, test::light_set(lights)));
+  const auto chosen = [&](const char* frames) {
+    ChildProcess program =
+        start_render(folder_.path(),
+                     arguments({"--frames", frames, "--target-fps", "0.01", "--stats", file("stats.json")}));
+    EXPECT_EQ(program.wait(), 0) << program.stderr_text();
+    return nlohmann::json::parse(read_text_file(file("stats.json")).value()).at("chosen");
+  };
+  const auto first = chosen("1"), last = chosen("80");
+  EXPECT_EQ(first["lights"], 16);
+  EXPECT_EQ(last["lights"], 24);
+  EXPECT_EQ(last["shadow_texels"], 1.0);
+  EXPECT_LT(last["expected_error"], first["expected_error"]);
+  EXPECT_GT(last["expected_error"], 0);
+}
+
 TEST_F(Command, AUniformEnvironmentReturnsAlbedoAndTheLowerHalfAddsNothingToTheGround) {
   ASSERT_TRUE(
       write_environment(file("sky.exr"), LatLongImage{64, 32, std::vector<Rgb>(64 * 32, Rgb::Ones())}));
