@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "render/casters.h"
+#include "render/read_back.h"
 
 namespace lightwell::bench {
 namespace {
@@ -232,16 +233,7 @@ void ForwardRenderer::render(const LightSet& lights, const render::SceneCamera& 
 }
 
 render::RadiancePicture ForwardRenderer::radiance() const {
-  render::RadiancePicture picture{
-      width_, height_,
-      std::vector<float>(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 4)};
-  glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
-  glReadPixels(0, 0, width_, height_, GL_RGBA, GL_FLOAT, picture.rgba.data());
-  const auto row = static_cast<std::ptrdiff_t>(width_) * 4;
-  for (std::ptrdiff_t y = 0; y < height_ / 2; ++y)
-    std::swap_ranges(picture.rgba.begin() + y * row, picture.rgba.begin() + (y + 1) * row,
-                     picture.rgba.begin() + (height_ - 1 - y) * row);
-  return picture;
+  return {width_, height_, render::read_back<float>(target_.id(), width_, height_)};
 }
 
 }  // namespace lightwell::bench

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "render/read_back.h"
+
 namespace lightwell::render {
 namespace {
 
@@ -376,17 +378,7 @@ void Renderer::tone_map(double dt_s) {
 }
 
 RadiancePicture Renderer::radiance() const {
-  const int width = options_.width;
-  const int height = options_.height;
-  RadiancePicture picture{width, height, std::vector<float>(static_cast<std::size_t>(width * height) * 4)};
-  glBindFramebuffer(GL_FRAMEBUFFER, shown().framebuffer);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, picture.rgba.data());
-  const auto row = static_cast<std::ptrdiff_t>(width) * 4;
-  for (std::ptrdiff_t y = 0; y < height / 2; ++y)
-    std::swap_ranges(picture.rgba.begin() + y * row, picture.rgba.begin() + (y + 1) * row,
-                     picture.rgba.begin() + (height - 1 - y) * row);
-  return picture;
+  return {width(), height(), read_back<float>(shown().framebuffer, width(), height())};
 }
 
 std::string Renderer::gl_renderer() {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "render/false_colour.h"
+#include "render/read_back.h"
 
 namespace lightwell::render {
 namespace {
@@ -172,17 +173,8 @@ void ToneMapper::draw_into(GLuint framebuffer, GLuint radiance, bool straight_al
 }
 
 DisplayPicture ToneMapper::read() const {
-  DisplayPicture picture{width_, height_,
-                         std::vector<std::uint8_t>(static_cast<std::size_t>(width_ * height_) * 4),
-                         look_.false_colour != FalseColour::none ? Display::srgb : look_.display};
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, picture.rgba.data());
-  const auto row = static_cast<std::ptrdiff_t>(width_) * 4;
-  for (std::ptrdiff_t y = 0; y < height_ / 2; ++y)
-    std::swap_ranges(picture.rgba.begin() + y * row, picture.rgba.begin() + (y + 1) * row,
-                     picture.rgba.begin() + (height_ - 1 - y) * row);
-  return picture;
+  return {width_, height_, read_back<std::uint8_t>(framebuffer_.id(), width_, height_),
+          look_.false_colour != FalseColour::none ? Display::srgb : look_.display};
 }
 
 }  // namespace lightwell::render
