@@ -98,6 +98,11 @@ Parsed parse_options(int argc, const char* const* argv) {
   app.add_option("--shadow-size", options.shadow_size, "texels a side of a shadow map")
       ->check(whole_numbers(16, 4096))
       ->capture_default_str();
+  app.add_option(
+         "--interleave", options.interleave,
+         "squares of so many pixels a side share the weak lights among them: 1 (each pixel takes all), 2, 4")
+      ->check(CLI::IsMember({1, 2, 4}))
+      ->capture_default_str();
   app.add_option("--size", size, "picture, WxH")->capture_default_str();
   app.add_option("--camera", options.camera,
                  "camera of the scene, by its name or its node's (default: the first)");

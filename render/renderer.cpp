@@ -6,7 +6,9 @@
 #include <chrono>
 #include <cmath>
 
+#include "render/light_subsets.h"
 #include "render/read_back.h"
+#include "render/uniforms.h"
 
 namespace lightwell::render {
 namespace {
@@ -27,48 +29,6 @@ Vec2f sample_offset(int index, int count) {
   return {static_cast<float>((index + 0.5) / count - 0.5), static_cast<float>(reversed + half_step - 0.5)};
 }
 
-// Only the models that the scene's materials use are compiled.
-std::string shading_models(const Scene& scene) {
-  const auto uses = [&](Material::Model model) {
-    return std::any_of(scene.materials.begin(), scene.materials.end(),
-                       [=](const Material& m) { return m.model == model; });
-  };
-  return std::string("#define HAS_PHONG ") + (uses(Material::Model::phong) ? "1" : "0") +
-         "\n#define HAS_METALLIC_ROUGHNESS " + (uses(Material::Model::metallic_roughness) ? "1" : "0") + "\n";
-}
-
-std::string emission_fact(const Scene& scene) {
-  const bool emits = std::any_of(scene.primitives.begin(), scene.primitives.end(), [&](const Primitive& p) {
-    return (scene.materials[static_cast<std::size_t>(p.material)].emission > 0).any();
-  });
-  return std::string("#define HAS_EMISSION ") + (emits ? "1" : "0") + "\n";
-}
-
-std::string map_facts(bool nothing_casts, bool simplified) {
-  constexpr float kCurvatureTexels = 0.1f;
-  // Depth: two steps of 16 bits. Cosine: below it the plane's slope is cut, where little light falls anyway.
-  return std::string("#define HAS_SHADOWS ") + (nothing_casts ? "0" : "1") + "\n#define CASTER_SLACK " +
-         std::to_string(kCurvatureTexels + (simplified ? kSimplifiedTexels : 0)) +
-         "\n#define DEPTH_SLACK 0.00003\n#define LEAST_COSINE 0.05\n";
-}
-
-// Values for a program, which it makes current.
-class Uniforms {
- public:
-  explicit Uniforms(const gl::Program& program) : program_(program) { glUseProgram(program.id()); }
-  [[nodiscard]] GLint place(const char* name) const { return gl::uniform(program_, name); }
-  void set(const char* name, int value) const { glUniform1i(place(name), value); }
-  void set(const char* name, float value) const { glUniform1f(place(name), value); }
-  void set(const char* name, const float* vector) const { glUniform3fv(place(name), 1, vector); }
-  void set_texture(const char* name, int unit, GLuint texture) const {
-    gl::bind_texture(unit, texture);
-    set(name, unit);
-  }
-
- private:
-  const gl::Program& program_;
-};
-
 }  // namespace
 
 Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& options) {
@@ -86,10 +46,8 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   r.nothing_casts_ = atlas->empty() && cutouts->empty();
   auto tone_mapper = ToneMapper::create();
   if (!tone_mapper) return tone_mapper.error();
-  r.shading_defines_ = shading_models(scene) + emission_fact(scene);
   auto surfaces =
-      gl::make_program("fullscreen_vertex", "shade_fragment",
-                       r.shading_defines_ + map_facts(r.nothing_casts_, options.simplify_casters));
+      SurfaceShading::create(scene, r.nothing_casts_, options.simplify_casters, options.interleave);
   if (!surfaces) return surfaces.error();
   auto background = gl::make_program("fullscreen_vertex", "background_fragment");
   if (!background) return background.error();
@@ -99,9 +57,6 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   r.tone_mapper_ = std::move(tone_mapper).value();
   r.surfaces_ = std::move(surfaces).value();
   r.background_ = std::move(background).value();
-  glUniformBlockBinding(r.surfaces_.id(), glGetUniformBlockIndex(r.surfaces_.id(), "Lights"), 0);
-  r.light_block_ =
-      gl::make_buffer(GL_UNIFORM_BUFFER, nullptr, kMaxLightsPerBlock * sizeof(LightRow), GL_DYNAMIC_DRAW);
   r.no_vertices_ = gl::make_vertex_array();
   r.environment_ = gl::make_texture(GL_RGBA32F, 1, 1);
   const int width = std::exchange(r.options_.width, 0);
@@ -137,6 +92,7 @@ Status Renderer::resize(int width, int height) {
   options_.width = width;
   options_.height = height;
   if (Status s = gbuffer_.resize(width, height); !s) return s;
+  if (Status s = surfaces_.resize(width, height, gbuffer_.depth()); !s) return s;
   if (Status s = tone_mapper_.resize(width, height); !s) return s;
   if (compositor_) {
     if (Status s = compositor_->resize(width, height); !s) return s;
@@ -155,26 +111,16 @@ Status Renderer::resize(Sums& sums) const {
   return {};
 }
 
-Status Renderer::make_unshadowed() {
-  if (unshadowed_.id() != 0) return {};
-  auto program = gl::make_program("fullscreen_vertex", "shade_fragment",
-                                  shading_defines_ + map_facts(true, options_.simplify_casters));
-  if (!program) return program.error();
-  unshadowed_ = std::move(program).value();
-  glUniformBlockBinding(unshadowed_.id(), glGetUniformBlockIndex(unshadowed_.id(), "Lights"), 0);
-  return {};
-}
-
 Status Renderer::set_shadows(bool on) {
   shadows_ = on;
-  return on ? Status() : make_unshadowed();
+  return on ? Status() : surfaces_.make_unshadowed();
 }
 
 Status Renderer::set_plate(const Plate& plate, float white) {
   if (!compositor_) {
     auto compositor = Compositor::create();
     if (!compositor) return compositor.error();
-    if (Status s = make_unshadowed(); !s) return s;
+    if (Status s = surfaces_.make_unshadowed(); !s) return s;
     compositor_.emplace(std::move(compositor).value());
     if (Status s = compositor_->resize(options_.width, options_.height); !s) return s;
     if (Status s = resize(unshadowed_sums_); !s) return s;
@@ -239,6 +185,7 @@ Status Renderer::render_samples(std::span<LightRow> all, const LightSet& lights,
   const int samples = end_sample - first_sample;
   const float weight = 1 / static_cast<float>(samples);
   double time = now_ms();
+  const double power = power_of(all);
   bool start_sum = true;
   // At least once, so that ambient light and background are drawn without any light.
   for (std::size_t first = 0; first == 0 || first < all.size(); first += atlas_.capacity()) {
@@ -248,10 +195,7 @@ Status Renderer::render_samples(std::span<LightRow> all, const LightSet& lights,
     for (const ShadowAtlas::Block& block : *blocks) {
       const auto rows = turn.subspan(block.first, block.count);
       const bool first_block = first == 0 && block.first == 0;
-      glBindBuffer(GL_UNIFORM_BUFFER, light_block_.id());
-      glBufferSubData(GL_UNIFORM_BUFFER, 0, static_cast<GLsizeiptr>(rows.size_bytes()), rows.data());
-      glBindBufferBase(GL_UNIFORM_BUFFER, 0, light_block_.id());
-      shadow_page_ = block.page;
+      surfaces_.set_lights(rows, power, block.page);
       time = lap(time, times_.shadow_ms);
       for (int sample = first_sample; sample < end_sample; ++sample) {
         const View view =
@@ -259,8 +203,7 @@ Status Renderer::render_samples(std::span<LightRow> all, const LightSet& lights,
         // With one sample a pixel the G-buffer of the first block serves all blocks.
         if (first_block || samples > 1) gbuffer_.draw(view);
         time = lap(time, times_.gbuffer_ms);
-        shade(view, static_cast<int>(block.count), lights, first_block, start_sum, weight,
-              environment_turn_rad);
+        shade({view, lights.ambient, first_block, weight}, start_sum, environment_turn_rad);
         start_sum = false;
         time = lap(time, times_.shading_ms);
       }
@@ -288,58 +231,33 @@ Result<std::vector<ShadowAtlas::Block>> Renderer::blocks_of(std::span<LightRow> 
   return blocks;
 }
 
-void Renderer::shade(const View& view, int light_count, const LightSet& lights, bool first_block,
-                     bool start_sum, float weight, double environment_turn_rad) {
+void Renderer::shade(const SurfaceShading::Sample& sample, bool start_sum, double environment_turn_rad) {
   const GLuint so_far = sums_.last().texture.id();
-  if (compositor_)
-    shade_surfaces(unshadowed_, unshadowed_sums_, view, light_count, lights, first_block, start_sum, weight);
-  shade_surfaces(shadows_ ? surfaces_ : unshadowed_, sums_, view, light_count, lights, first_block, start_sum,
-                 weight);
+  if (compositor_) shade_surfaces(false, unshadowed_sums_, sample, start_sum);
+  shade_surfaces(shadows_, sums_, sample, start_sum);
 
   const Uniforms background(background_);
   background.set_texture("so_far", 0, so_far);
   background.set_texture("environment", 1, environment_.id());
-  background.set("weight", weight);
+  background.set("weight", sample.weight);
   background.set("start_sum", start_sum ? 1 : 0);
-  background.set("show_environment", show_environment_ && first_block ? 1 : 0);
+  background.set("show_environment", show_environment_ && sample.first_block ? 1 : 0);
   background.set("environment_turns",
                  static_cast<float>(std::remainder(environment_turn_rad / (2 * kPi), 1.0)));
-  background.set("view_forward", view.forward.data());
-  background.set("view_right", view.right.data());
-  background.set("view_up", view.up.data());
+  background.set("view_forward", sample.view.forward.data());
+  background.set("view_right", sample.view.right.data());
+  background.set("view_up", sample.view.up.data());
   glDepthFunc(GL_EQUAL);
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glDepthFunc(GL_LESS);
 }
 
-void Renderer::shade_surfaces(const gl::Program& program, Sums& sums, const View& view, int light_count,
-                              const LightSet& lights, bool first_block, bool start_sum, float weight) {
+void Renderer::shade_surfaces(bool shadows, Sums& sums, const SurfaceShading::Sample& sample,
+                              bool start_sum) const {
   const GLuint so_far = sums.last().texture.id();
   sums.current = 1 - sums.current;
-  glBindFramebuffer(GL_FRAMEBUFFER, sums.last().framebuffer.id());
-  glViewport(0, 0, options_.width, options_.height);
-  glEnable(GL_DEPTH_TEST);
-  glDepthMask(GL_FALSE);
-  glBindVertexArray(no_vertices_.id());
-
-  const Uniforms surfaces(program);
-  surfaces.set_texture("so_far", 0, so_far);
-  surfaces.set_texture("position_material_map", 1, gbuffer_.position_material());
-  surfaces.set_texture("surface_map", 2, gbuffer_.surface());
-  surfaces.set_texture("materials", 3, gbuffer_.materials());
-  surfaces.set_texture("shadow_maps", 4, atlas_.texture(shadow_page_));
-  surfaces.set_texture("emission_map", 5, gbuffer_.emission());
-  surfaces.set("atlas_side", static_cast<float>(atlas_.side()));
-  surfaces.set("light_count", light_count);
-  surfaces.set("objects_centre", casters_.objects.centre.data());
-  surfaces.set("scene_centre", casters_.scene.centre.data());
-  surfaces.set("weight", weight);
-  surfaces.set("coverage", first_block ? 1.0f : 0.0f);
-  surfaces.set("start_sum", start_sum ? 1 : 0);
-  surfaces.set("ambient", lights.ambient.data());
-  surfaces.set("eye", view.eye.data());
-  glDepthFunc(GL_GREATER);  // the draw is at depth 1, where nothing is
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  surfaces_.shade(shadows, sample, {sums.last().framebuffer.id(), so_far, start_sum}, gbuffer_, atlas_,
+                  casters_);
 }
 
 Status Renderer::lay_over(const RadiancePicture& picture, int left, int bottom) {

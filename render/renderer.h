@@ -17,6 +17,7 @@
 #include "render/graphics_reset.h"
 #include "render/picture.h"
 #include "render/shadow_atlas.h"
+#include "render/surface_shading.h"
 #include "render/tone_mapper.h"
 
 namespace lightwell::render {
@@ -29,7 +30,9 @@ struct RendererOptions {
   bool texels_by_power =
       true;  // strong lights have maps of up to kLargestMap times the side, weak ones smaller ones
   bool simplify_casters = true;  // shadows of simpler meshes, a quarter of a map's texel off at most
-  bool measure_passes = false;   // waits for each pass, to time it
+  // Pixels a side of the square over which weak lights are spread, 1, 2 or 4; 1: each pixel takes all lights.
+  int interleave = 2;
+  bool measure_passes = false;  // waits for each pass, to time it
 };
 
 struct PassTimes {
@@ -110,31 +113,26 @@ class Renderer {
   [[nodiscard]] Shown shown() const;
   void find_casters(const Scene& scene, bool fine_ones);
   Status resize(Sums& sums) const;
-  Status make_unshadowed();
   Status render_samples(std::span<LightRow> rows, const LightSet& lights, const SceneCamera& camera,
                         int first_sample, int end_sample, double environment_turn_rad);
   Result<std::vector<ShadowAtlas::Block>> blocks_of(std::span<LightRow> rows);
   // Adds the block of lights and, with the first of a sample, what does not depend on them.
-  void shade(const View& view, int light_count, const LightSet& lights, bool first_block, bool start_sum,
-             float weight, double environment_turn_rad);
-  void shade_surfaces(const gl::Program& program, Sums& sums, const View& view, int light_count,
-                      const LightSet& lights, bool first_block, bool start_sum, float weight);
+  void shade(const SurfaceShading::Sample& sample, bool start_sum, double environment_turn_rad);
+  void shade_surfaces(bool shadows, Sums& sums, const SurfaceShading::Sample& sample, bool start_sum) const;
   // Adds the time since start to a pass, where passes are measured.
   double lap(double start, double& pass) const;
 
   RendererOptions options_;
   GBuffer gbuffer_;
   ShadowAtlas atlas_;
-  int shadow_page_ = 0;  // of the block that is shaded
   CutoutCasters cutouts_;
   ToneMapper tone_mapper_;
   Casters casters_;
   Casters fine_casters_;  // for maps larger than shadow_size
   Sphere fitted_scene_;   // what the maps in the atlas were drawn for
-  gl::Program surfaces_;
+  SurfaceShading surfaces_;
   gl::Program background_;
   gl::Program lay_over_;  // made when it is first needed
-  gl::Buffer light_block_;
   gl::VertexArray no_vertices_;
   gl::Texture environment_;
   bool show_environment_ = false;
@@ -142,8 +140,6 @@ class Renderer {
   // Light as if nothing cast a shadow.
   bool shadows_ = true;
   std::optional<Compositor> compositor_;
-  std::string shading_defines_;
-  gl::Program unshadowed_;
   Sums unshadowed_sums_;
   GraphicsReset reset_;
   PassTimes times_;

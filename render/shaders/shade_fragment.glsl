@@ -3,6 +3,8 @@
 // Adds one block of lights to the pixels that show a surface (the depth test leaves the others out): one loop, one
 // shadow look-up a light. What a loop reads of a uniform, software drivers gather pixel by pixel: more than half of the
 // loop's work. So it derives the map's axes, and takes everything else from before it.
+// LIGHT_PASS: WHOLE draws all lights; SUBSETS a pixel's subset of the weak ones (interleave.glsl); FILTERED the strong ones,
+// and what the subsets of the neighbourhood make of the weak; where that is too little, all.
 struct Light { vec4 to_light_extent, illuminance_texel, tile_blur, fit; };  // LightRow
 layout(std140) uniform Lights { Light lights[256]; };
 uniform int light_count;
@@ -12,16 +14,20 @@ uniform float atlas_side;              // texels
 uniform sampler2D position_material_map;
 uniform usampler2D surface_map;
 uniform sampler2D materials;
+uniform vec3 eye;
+#if LIGHT_PASS == SUBSETS
+out uvec4 subset;
+#else
 uniform sampler2D so_far;   // the sum of earlier lights and samples
 uniform float weight;       // of this sample
 uniform float coverage;     // once a sample, as ambient light
 uniform int start_sum;      // so_far is not there yet
-uniform vec3 eye;
 uniform vec3 ambient;
 #if HAS_EMISSION
 uniform sampler2D emission_map;
 #endif
 out vec4 radiance;
+#endif
 
 const float kPi = 3.14159265358979;
 
@@ -137,13 +143,32 @@ void main() {
   maps.bias = in_shadow_maps == 1u ? 1.0 : 0.0;
   maps.behind_support = in_shadow_maps == 2u;
   maps.plane = from_octahedral(vec2(packed_surface.w >> 10 & 2047u, packed_surface.w >> 21) * (2.0 / 2047.0) - 1.0);
-  int count = light_count;
+  int first = 0, step = 1, end = light_count;
+  vec3 sum = vec3(0.0);
+#if LIGHT_PASS == SUBSETS
+  first = strong_count + subset_of(at);
+  step = INTERLEAVE * INTERLEAVE;
+  // What the surface's colour makes of it is the filter's to say: so a pattern on a surface is no edge.
+  Surface lobe = s, matt = s;
+  lobe.diffuse = vec3(0.0);
+  matt.diffuse = vec3(1.0);
+  vec3 matt_sum = vec3(0.0);
+#else
   // Ambient light reaches every surface: albedo times radiance. A lobe's albedo is taken at normal incidence.
-  vec3 sum = (s.diffuse + s.specular) * ambient * coverage;
+  sum = (s.diffuse + s.specular) * ambient * coverage;
 #if HAS_EMISSION
   sum += texelFetch(emission_map, at, 0).rgb * coverage;
 #endif
-  for (int i = 0; i < count; ++i) {
+#endif
+#if LIGHT_PASS == FILTERED
+  Subsets weak = gather_subsets(at, s.normal, maps.plane, position_material.xyz - eye, uint(position_material.w));
+  bool wide = s.phong ? s.exponent <= WIDEST_EXPONENT : s.alpha2 >= LEAST_ALPHA2;
+  if (weak.found >= LEAST_FOUND && (wide || s.specular == vec3(0.0))) {
+    end = strong_count;
+    sum += s.diffuse * weak.diffuse + weak.specular;
+  }
+#endif
+  for (int i = first; i < end; i += step) {
     vec4 to_light_extent = lights[i].to_light_extent;
     vec4 light = lights[i].illuminance_texel;
     vec3 to_light = to_light_extent.xyz;
@@ -151,8 +176,18 @@ void main() {
 #if HAS_SHADOWS
     light.rgb *= visibility(maps, lights[i].tile_blur, lights[i].fit, light.w, to_light, to_light_extent.w);
 #endif
+#if LIGHT_PASS == SUBSETS
+    vec3 of_lobe = reflectance(lobe, to_light, cosine);
+    sum += light.rgb * cosine * of_lobe;
+    matt_sum += light.rgb * cosine * (reflectance(matt, to_light, cosine) - of_lobe);
+#else
     sum += light.rgb * cosine * reflectance(s, to_light, cosine);
+#endif
   }
+#if LIGHT_PASS == SUBSETS
+  subset = pack_subset(matt_sum, sum, s.normal, position_material.xyz - eye, uint(position_material.w));
+#else
   radiance = vec4(sum, coverage) * weight;
   if (start_sum == 0) radiance += texelFetch(so_far, at, 0);
+#endif
 }

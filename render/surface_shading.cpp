@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/surface_shading.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <vector>
+
+#include "render/light_subsets.h"
+#include "render/shaders.h"
+#include "render/uniforms.h"
+
+namespace lightwell::render {
+namespace {
+
+// Only the models that the scene's materials use are compiled.
+std::string shading_models(const Scene& scene) {
+  const auto uses = [&](Material::Model model) {
+    return std::any_of(scene.materials.begin(), scene.materials.end(),
+                       [=](const Material& m) { return m.model == model; });
+  };
+  return std::string("#define HAS_PHONG ") + (uses(Material::Model::phong) ? "1" : "0") +
+         "\n#define HAS_METALLIC_ROUGHNESS " + (uses(Material::Model::metallic_roughness) ? "1" : "0") + "\n";
+}
+
+std::string emission_fact(const Scene& scene) {
+  const bool emits = std::any_of(scene.primitives.begin(), scene.primitives.end(), [&](const Primitive& p) {
+    return (scene.materials[static_cast<std::size_t>(p.material)].emission > 0).any();
+  });
+  return std::string("#define HAS_EMISSION ") + (emits ? "1" : "0") + "\n";
+}
+
+std::string map_facts(bool nothing_casts, bool simplified) {
+  constexpr float kCurvatureTexels = 0.1f;
+  // Depth: two steps of 16 bits. Cosine: below it the plane's slope is cut, where little light falls anyway.
+  return std::string("#define HAS_SHADOWS ") + (nothing_casts ? "0" : "1") + "\n#define CASTER_SLACK " +
+         std::to_string(kCurvatureTexels + (simplified ? kSimplifiedTexels : 0)) +
+         "\n#define DEPTH_SLACK 0.00003\n#define LEAST_COSINE 0.05\n";
+}
+
+constexpr const char* kPasses = "#define WHOLE 0\n#define SUBSETS 1\n#define FILTERED 2\n";
+
+// What counts as one surface, and what is left to the filter: chosen by the error on the judged pictures against the time.
+std::string filter_facts(int interleave) {
+  const std::string least_found = interleave == 2 ? "1.0" : "0.8";  // of the subsets
+  return "#define INTERLEAVE " + std::to_string(interleave) + "\n#define LEAST_FOUND " + least_found +
+         "\n#define SAME_NORMAL 0.9\n"     // 26 degrees
+         "#define SAME_PLANE 2.0\n"        // pixels
+         "#define WIDEST_EXPONENT 50.0\n"  // narrower lobes change within the window
+         "#define LEAST_ALPHA2 0.01\n";
+}
+
+Status add(gl::Program& made, const std::string& defines) {
+  auto program = gl::make_program("fullscreen_vertex", "shade_fragment", defines);
+  if (!program) return program.error();
+  made = std::move(program).value();
+  glUniformBlockBinding(made.id(), glGetUniformBlockIndex(made.id(), "Lights"), 0);
+  return {};
+}
+
+}  // namespace
+
+Result<SurfaceShading::Programs> SurfaceShading::make_programs(bool shadows) const {
+  Programs made;
+  const std::string facts = kPasses + models_ + (shadows ? map_facts_ : no_map_facts_);
+  if (Status s = add(made.whole, facts + "#define LIGHT_PASS WHOLE\n"); !s) return s.error();
+  if (interleave_ == 1) return made;
+  const std::string filter = filter_facts(interleave_) + std::string(shader_text("interleave.glsl"));
+  if (Status s = add(made.subsets, facts + "#define LIGHT_PASS SUBSETS\n" + filter); !s) return s.error();
+  if (Status s = add(made.filtered, facts + "#define LIGHT_PASS FILTERED\n" + filter); !s) return s.error();
+  return made;
+}
+
+Result<SurfaceShading> SurfaceShading::create(const Scene& scene, bool nothing_casts, bool simplified_casters,
+                                              int interleave) {
+  SurfaceShading shading;
+  shading.interleave_ = interleave;
+  shading.models_ = shading_models(scene) + emission_fact(scene);
+  shading.map_facts_ = map_facts(nothing_casts, simplified_casters);
+  shading.no_map_facts_ = map_facts(true, simplified_casters);
+  auto programs = shading.make_programs(true);
+  if (!programs) return programs.error();
+  shading.shadowed_ = std::move(programs).value();
+  shading.light_block_ =
+      gl::make_buffer(GL_UNIFORM_BUFFER, nullptr, kMaxLightsPerBlock * sizeof(LightRow), GL_DYNAMIC_DRAW);
+  shading.no_vertices_ = gl::make_vertex_array();
+  return shading;
+}
+
+Status SurfaceShading::make_unshadowed() {
+  if (unshadowed_.whole.id() != 0) return {};
+  auto programs = make_programs(false);
+  if (!programs) return programs.error();
+  unshadowed_ = std::move(programs).value();
+  return {};
+}
+
+Status SurfaceShading::resize(int width, int height, GLuint depth) {
+  width_ = width;
+  height_ = height;
+  if (interleave_ == 1) return {};
+  subsets_ = gl::make_texture(GL_RGBA32UI, width, height);
+  auto framebuffer = gl::make_framebuffer({subsets_.id()}, depth);
+  if (!framebuffer) return framebuffer.error();
+  subsets_target_ = std::move(framebuffer).value();
+  return {};
+}
+
+void SurfaceShading::set_lights(std::span<const LightRow> lights, double power, int shadow_page) {
+  std::vector<LightRow> rows(lights.begin(), lights.end());
+  const std::size_t strong = arrange_subsets(rows, power, interleave_);
+  glBindBuffer(GL_UNIFORM_BUFFER, light_block_.id());
+  glBufferSubData(GL_UNIFORM_BUFFER, 0, static_cast<GLsizeiptr>(rows.size() * sizeof(LightRow)), rows.data());
+  shadow_page_ = shadow_page;
+  lights_ = static_cast<int>(rows.size());
+  strong_ = static_cast<int>(strong);
+  weak_illuminance_ = Rgb::Zero();
+  for (std::size_t i = strong; i < rows.size(); ++i)
+    weak_illuminance_ += Eigen::Map<const Rgb>(rows[i].illuminance);
+}
+
+void SurfaceShading::shade(bool shadows, const Sample& sample, const Target& target, const GBuffer& gbuffer,
+                           const ShadowAtlas& atlas, const Casters& casters) const {
+  const Programs& programs = shadows ? shadowed_ : unshadowed_;
+  glViewport(0, 0, width_, height_);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_GREATER);  // the draw is at depth 1, where nothing is
+  glBindVertexArray(no_vertices_.id());
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, light_block_.id());
+  const bool interleaved = strong_ < lights_;
+  if (interleaved) {
+    glBindFramebuffer(GL_FRAMEBUFFER, subsets_target_.id());
+    const GLuint nothing[4] = {0, 0, 0, 0};
+    glClearBufferuiv(GL_COLOR, 0, nothing);
+    draw(programs.subsets, sample, gbuffer, atlas, casters);
+  }
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+  const gl::Program& program = interleaved ? programs.filtered : programs.whole;
+  const Uniforms surfaces(program);
+  surfaces.set_texture("so_far", 0, target.so_far);
+  surfaces.set_texture("emission_map", 5, gbuffer.emission());
+  surfaces.set("weight", sample.weight);
+  surfaces.set("coverage", sample.first_block ? 1.0f : 0.0f);
+  surfaces.set("start_sum", target.start_sum ? 1 : 0);
+  surfaces.set("ambient", sample.ambient.data());
+  if (interleaved) surfaces.set_texture("subset_map", 6, subsets_.id());
+  draw(program, sample, gbuffer, atlas, casters);
+}
+
+void SurfaceShading::draw(const gl::Program& program, const Sample& sample, const GBuffer& gbuffer,
+                          const ShadowAtlas& atlas, const Casters& casters) const {
+  const View& view = sample.view;
+  const Uniforms surfaces(program);
+  surfaces.set_texture("position_material_map", 1, gbuffer.position_material());
+  surfaces.set_texture("surface_map", 2, gbuffer.surface());
+  surfaces.set_texture("materials", 3, gbuffer.materials());
+  surfaces.set_texture("shadow_maps", 4, atlas.texture(shadow_page_));
+  surfaces.set("atlas_side", static_cast<float>(atlas.side()));
+  surfaces.set("light_count", lights_);
+  surfaces.set("objects_centre", casters.objects.centre.data());
+  surfaces.set("scene_centre", casters.scene.centre.data());
+  surfaces.set("eye", view.eye.data());
+  if (strong_ < lights_) {
+    const Vec3f axis = view.up.cross(view.right).normalized();
+    surfaces.set("strong_count", strong_);
+    surfaces.set("weak_illuminance", weak_illuminance_.data());
+    surfaces.set("view_axis", axis.data());
+    surfaces.set("view_forward", view.forward.data());
+    surfaces.set("view_right", view.right.data());
+    surfaces.set("view_up", view.up.data());
+  }
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+}  // namespace lightwell::render

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "render/camera.h"
+#include "render/casters.h"
+#include "render/gbuffer.h"
+#include "render/light_rows.h"
+#include "render/shadow_atlas.h"
+
+namespace lightwell::render {
+
+// Lights the surfaces that a G-buffer shows, one block of lights after the other (shade_fragment.glsl).
+class SurfaceShading {
+ public:
+  // interleave: pixels a side of the square over which the weak lights are spread (light_subsets.h); 1: each takes all
+  static Result<SurfaceShading> create(const Scene& scene, bool nothing_casts, bool simplified_casters,
+                                       int interleave);
+  // depth: of the G-buffer
+  Status resize(int width, int height, GLuint depth);
+  // For shade() with shadows = false.
+  Status make_unshadowed();
+
+  // The lights that shade() draws, at most kMaxLightsPerBlock, with their maps, all on one page of the atlas.
+  // power: of all blocks' lights (power_of)
+  void set_lights(std::span<const LightRow> lights, double power, int shadow_page);
+
+  struct Target {
+    GLuint framebuffer;  // with the G-buffer's depth
+    GLuint so_far;       // the sum of earlier blocks and samples
+    bool start_sum;      // so_far is not there yet
+  };
+  // Of one sample of the picture.
+  struct Sample {
+    const View& view;
+    Rgb ambient;
+    bool first_block;  // ambient light and emission are drawn with it
+    float weight;
+  };
+  void shade(bool shadows, const Sample& sample, const Target& target, const GBuffer& gbuffer,
+             const ShadowAtlas& atlas, const Casters& casters) const;
+
+ private:
+  struct Programs {
+    gl::Program whole, subsets, filtered;
+  };
+  Result<Programs> make_programs(bool shadows) const;
+  void draw(const gl::Program& program, const Sample& sample, const GBuffer& gbuffer,
+            const ShadowAtlas& atlas, const Casters& casters) const;
+
+  int width_ = 0;
+  int height_ = 0;
+  int interleave_ = 1;
+  std::string models_, map_facts_, no_map_facts_;
+  Programs shadowed_, unshadowed_;
+  gl::Buffer light_block_;
+  gl::VertexArray no_vertices_;
+  gl::Texture subsets_;  // interleave.glsl
+  gl::Framebuffer subsets_target_;
+  int shadow_page_ = 0;
+  int lights_ = 0;
+  int strong_ = 0;                      // the first of them
+  Rgb weak_illuminance_ = Rgb::Zero();  // of the others together
+};
+
+}  // namespace lightwell::render
