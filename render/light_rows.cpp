@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "lighting/decomposition/angular_radius.h"
+
 namespace lightwell::render {
 namespace {
 
@@ -30,6 +32,7 @@ std::vector<LightRow> make_light_rows(std::span<const DirectionalLight> lights, 
     std::copy_n(d.data(), 3, row.to_light);
     row.extent_m = (with_supports ? 2 : -2) * radius * kDepthPadding;
     std::copy_n(light.illuminance.data(), 3, row.illuminance);
+    row.spread = std::tan(std::clamp(light.angular_radius_rad, 0.0f, kLargestAngularRadius));
     rows.push_back(row);
   }
   return rows;
@@ -94,7 +97,6 @@ void fit_map(LightRow& light, const Casters& drawn, int side) {
   light.fit[2] = 0.5f - light.fit[0] * (u.least + u.most) / 2;
   light.fit[3] = 0.5f - light.fit[1] * (v.least + v.most) / 2;
   light.texel = 1 / static_cast<float>(side);
-  light.blur = light.texel / std::min(light.fit[0], light.fit[1]);
 }
 
 MapRows map_rows(const LightRow& light, const Casters& casters) {

@@ -19,7 +19,7 @@ struct LightRow {
   float illuminance[3];
   float texel;    // 1 / side of the light's map, texels
   float tile[3];  // the map in the atlas: corner and side, of the atlas's side
-  float blur;     // of the map's largest texel, metres
+  float spread;   // tangent of the light's angular radius
   // From metres along the map's axes, from the sphere's centre, to the map's square: scales, then offsets.
   float fit[4];
 };
@@ -35,7 +35,7 @@ inline constexpr int kMaxLightsPerBlock = 256;
 std::vector<LightRow> make_light_rows(std::span<const DirectionalLight> lights, const Casters& casters);
 
 // Fits a map of so many texels a side to what casts, as the light sees it: the objects' rectangle, or where a support is
-// in the light's way the scene's sphere. Sets texel, blur and fit. drawn: the meshes that the map will show
+// in the light's way the scene's sphere. Sets texel and fit. drawn: the meshes that the map will show
 void fit_map(LightRow& light, const Casters& drawn, int side);
 
 // Affine maps of world positions for a light's map: dot(row, (position, 1)) is in [0, 1] for every caster but the

@@ -98,6 +98,11 @@ Parsed parse_options(int argc, const char* const* argv) {
   app.add_option("--shadow-size", options.shadow_size, "texels a side of a shadow map")
       ->check(whole_numbers(16, 4096))
       ->capture_default_str();
+  app.add_option_function<std::string>(
+         "--shadow-edges", [&](const std::string& edges) { options.soft_edges = edges == "soft"; },
+         "soft: as wide as each light's part of the surroundings makes them (default); hard: a point's, "
+         "faster")
+      ->check(CLI::IsMember({"soft", "hard"}));
   app.add_option(
          "--interleave", options.interleave,
          "squares of so many pixels a side share the weak lights among them: 1 (each pixel takes all), 2, 4")

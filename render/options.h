@@ -31,6 +31,7 @@ struct Options {
   std::optional<double> max_error;   // predicted: kept by the fewest lights
   int shadow_maps = 0;               // 0: all lights, live 72
   int shadow_size = 256;
+  bool soft_edges = true;
   int interleave = 2;  // pixels a side that share the weak lights; 1: none do
   int width = 640;
   int height = 480;

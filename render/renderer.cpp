@@ -46,8 +46,8 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   r.nothing_casts_ = atlas->empty() && cutouts->empty();
   auto tone_mapper = ToneMapper::create();
   if (!tone_mapper) return tone_mapper.error();
-  auto surfaces =
-      SurfaceShading::create(scene, r.nothing_casts_, options.simplify_casters, options.interleave);
+  auto surfaces = SurfaceShading::create(scene, r.nothing_casts_,
+                                         {options.simplify_casters, options.soft_edges, options.interleave});
   if (!surfaces) return surfaces.error();
   auto background = gl::make_program("fullscreen_vertex", "background_fragment");
   if (!background) return background.error();

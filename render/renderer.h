@@ -31,6 +31,7 @@ struct RendererOptions {
       true;  // strong lights have maps of up to kLargestMap times the side, weak ones smaller ones
   bool simplify_casters = true;  // shadows of simpler meshes, a quarter of a map's texel off at most
   // Pixels a side of the square over which weak lights are spread, 1, 2 or 4; 1: each pixel takes all lights.
+  bool soft_edges = true;  // of shadows, as wide as their lights make them
   int interleave = 2;
   bool measure_passes = false;  // waits for each pass, to time it
 };

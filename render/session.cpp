@@ -72,6 +72,7 @@ class Session {
     renderer_options.height = options_.height;
     renderer_options.samples = options_.samples;
     renderer_options.shadow_size = options_.shadow_size;
+    renderer_options.soft_edges = options_.soft_edges;
     renderer_options.interleave = options_.interleave;
     renderer_options.measure_passes = !options_.stats.empty();
     auto renderer = Renderer::create(scene_, renderer_options);

@@ -30,12 +30,15 @@ std::string emission_fact(const Scene& scene) {
   return std::string("#define HAS_EMISSION ") + (emits ? "1" : "0") + "\n";
 }
 
-std::string map_facts(bool nothing_casts, bool simplified) {
+// The look-up of shadows, and what it is to know.
+std::string look_up(bool nothing_casts, const ShadingOptions& options) {
   constexpr float kCurvatureTexels = 0.1f;
+  if (nothing_casts) return "#define HAS_SHADOWS 0\n";
   // Depth: two steps of 16 bits. Cosine: below it the plane's slope is cut, where little light falls anyway.
-  return std::string("#define HAS_SHADOWS ") + (nothing_casts ? "0" : "1") + "\n#define CASTER_SLACK " +
-         std::to_string(kCurvatureTexels + (simplified ? kSimplifiedTexels : 0)) +
-         "\n#define DEPTH_SLACK 0.00003\n#define LEAST_COSINE 0.05\n";
+  return "#define HAS_SHADOWS 1\n#define CASTER_SLACK " +
+         std::to_string(kCurvatureTexels + (options.simplified_casters ? kSimplifiedTexels : 0)) +
+         "\n#define DEPTH_SLACK 0.00003\n#define LEAST_COSINE 0.05\n#define SOFT_EDGES " +
+         (options.soft_edges ? "1\n" : "0\n") + std::string(shader_text("shadow.glsl"));
 }
 
 constexpr const char* kPasses = "#define WHOLE 0\n#define SUBSETS 1\n#define FILTERED 2\n";
@@ -62,7 +65,7 @@ Status add(gl::Program& made, const std::string& defines) {
 
 Result<SurfaceShading::Programs> SurfaceShading::make_programs(bool shadows) const {
   Programs made;
-  const std::string facts = kPasses + models_ + (shadows ? map_facts_ : no_map_facts_);
+  const std::string facts = kPasses + models_ + (shadows ? look_up_ : no_look_up_);
   if (Status s = add(made.whole, facts + "#define LIGHT_PASS WHOLE\n"); !s) return s.error();
   if (interleave_ == 1) return made;
   const std::string filter = filter_facts(interleave_) + std::string(shader_text("interleave.glsl"));
@@ -71,13 +74,13 @@ Result<SurfaceShading::Programs> SurfaceShading::make_programs(bool shadows) con
   return made;
 }
 
-Result<SurfaceShading> SurfaceShading::create(const Scene& scene, bool nothing_casts, bool simplified_casters,
-                                              int interleave) {
+Result<SurfaceShading> SurfaceShading::create(const Scene& scene, bool nothing_casts,
+                                              const ShadingOptions& options) {
   SurfaceShading shading;
-  shading.interleave_ = interleave;
+  shading.interleave_ = options.interleave;
   shading.models_ = shading_models(scene) + emission_fact(scene);
-  shading.map_facts_ = map_facts(nothing_casts, simplified_casters);
-  shading.no_map_facts_ = map_facts(true, simplified_casters);
+  shading.look_up_ = look_up(nothing_casts, options);
+  shading.no_look_up_ = look_up(true, options);
   auto programs = shading.make_programs(true);
   if (!programs) return programs.error();
   shading.shadowed_ = std::move(programs).value();

@@ -13,12 +13,18 @@
 
 namespace lightwell::render {
 
+struct ShadingOptions {
+  bool simplified_casters = true;  // in the shadow maps
+  // Edges of shadows as wide as their lights make them; else as sharp as the maps are.
+  bool soft_edges = true;
+  int interleave =
+      1;  // pixels a side of the square over which weak lights are spread (light_subsets.h); 1: each takes all
+};
+
 // Lights the surfaces that a G-buffer shows, one block of lights after the other (shade_fragment.glsl).
 class SurfaceShading {
  public:
-  // interleave: pixels a side of the square over which the weak lights are spread (light_subsets.h); 1: each takes all
-  static Result<SurfaceShading> create(const Scene& scene, bool nothing_casts, bool simplified_casters,
-                                       int interleave);
+  static Result<SurfaceShading> create(const Scene& scene, bool nothing_casts, const ShadingOptions& options);
   // depth: of the G-buffer
   Status resize(int width, int height, GLuint depth);
   // For shade() with shadows = false.
@@ -54,7 +60,7 @@ class SurfaceShading {
   int width_ = 0;
   int height_ = 0;
   int interleave_ = 1;
-  std::string models_, map_facts_, no_map_facts_;
+  std::string models_, look_up_, no_look_up_;
   Programs shadowed_, unshadowed_;
   gl::Buffer light_block_;
   gl::VertexArray no_vertices_;

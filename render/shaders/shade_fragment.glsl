@@ -5,12 +5,10 @@
 // loop's work. So it derives the map's axes, and takes everything else from before it.
 // LIGHT_PASS: WHOLE draws all lights; SUBSETS a pixel's subset of the weak ones (interleave.glsl); FILTERED the strong ones,
 // and what the subsets of the neighbourhood make of the weak; where that is too little, all.
-struct Light { vec4 to_light_extent, illuminance_texel, tile_blur, fit; };  // LightRow
+struct Light { vec4 to_light_extent, illuminance_texel, tile_spread, fit; };  // LightRow
 layout(std140) uniform Lights { Light lights[256]; };
 uniform int light_count;
 uniform vec3 objects_centre, scene_centre;  // of the spheres that maps fit, without supports in the way and with
-uniform highp sampler2D shadow_maps;  // depths, as they are
-uniform float atlas_side;              // texels
 uniform sampler2D position_material_map;
 uniform usampler2D surface_map;
 uniform sampler2D materials;
@@ -66,69 +64,40 @@ Surface unpack(vec4 position_material, uvec4 packed_surface) {
 }
 
 // glTF 2.0, appendix B.3: Trowbridge–Reitz distribution, Smith masking, Schlick's Fresnel term.
-vec3 metallic_roughness(Surface s, vec3 to_light, float cosine) {
+// spread: tangent of the light's angular radius, which widens the lobe
+vec3 metallic_roughness(Surface s, vec3 to_light, float cosine, float spread) {
   vec3 h = to_light + s.to_eye;
   h *= inversesqrt(max(dot(h, h), 1e-12));  // a light exactly behind has none
   float nv = max(dot(s.normal, s.to_eye), 1e-4);
   float nh = max(dot(s.normal, h), 0.0);
   float vh = max(dot(s.to_eye, h), 0.0);
-  float t = nh * nh * (s.alpha2 - 1.0) + 1.0;
-  float distribution = s.alpha2 / (kPi * t * t);
+  // Slopes of variance α²/2 an axis, and of a disc spread²/4, which reflection halves in angle.
+  float alpha2 = min(s.alpha2 + spread * spread / 8.0, 1.0);
+  float t = nh * nh * (alpha2 - 1.0) + 1.0;
+  float distribution = alpha2 / (kPi * t * t);
   float visibility = 0.5 / (cosine * sqrt(s.alpha2 + (1.0 - s.alpha2) * nv * nv) +
                             nv * sqrt(s.alpha2 + (1.0 - s.alpha2) * cosine * cosine));
   vec3 fresnel = s.specular + (1.0 - s.specular) * pow(1.0 - min(vh, 1.0), 5.0);
   return (1.0 - fresnel) * s.diffuse / kPi + fresnel * distribution * visibility;
 }
 
-vec3 phong(Surface s, vec3 to_light) {
+vec3 phong(Surface s, vec3 to_light, float spread) {
   float along = dot(s.mirrored, to_light);
-  float lobe = along > 0.0 || s.exponent == 0.0 ? pow(max(along, 1e-8), s.exponent) : 0.0;
-  return s.diffuse / kPi + s.specular * ((s.exponent + 2.0) / (2.0 * kPi) * lobe);
+  // A lobe of variance 1/n an axis over a disc of spread²/4 is one of their sum, of the same integral.
+  float exponent = s.exponent / (1.0 + s.exponent * spread * spread / 4.0);
+  float lobe = along > 0.0 || s.exponent == 0.0 ? pow(max(along, 1e-8), exponent) : 0.0;
+  float scale = (s.exponent + 2.0) * (exponent + 1.0) / (s.exponent + 1.0);
+  return s.diffuse / kPi + s.specular * (scale / (2.0 * kPi) * lobe);
 }
 
-vec3 reflectance(Surface s, vec3 to_light, float cosine) {
+vec3 reflectance(Surface s, vec3 to_light, float cosine, float spread) {
 #if HAS_PHONG && HAS_METALLIC_ROUGHNESS
-  return s.phong ? phong(s, to_light) : metallic_roughness(s, to_light, cosine);
+  return s.phong ? phong(s, to_light, spread) : metallic_roughness(s, to_light, cosine, spread);
 #elif HAS_PHONG
-  return phong(s, to_light);
+  return phong(s, to_light, spread);
 #else
-  return metallic_roughness(s, to_light, cosine);
+  return metallic_roughness(s, to_light, cosine, spread);
 #endif
-}
-
-struct Maps {
-  vec3 from_objects, from_scene;  // to the surface
-  float bias;                     // 0 where the surface does not stand in the maps, else 1
-  bool behind_support;
-  vec3 plane;  // normal of the triangle itself
-};
-
-// 1 lit, 0 in shadow, between them what bilinear weights of the nearest four texels make of them. Outside its map
-// everything is lit. The axes are map_rows's.
-float visibility(Maps maps, vec4 tile_blur, vec4 fit, float texel, vec3 to_light, float extent) {
-  float size = abs(extent);
-  // Each texel is compared with the depth that the surface's own plane has there, not with that of the point: so no
-  // slope needs a bias. The rest (CASTER_SLACK, in texels along the normal) is for casters simpler than what is seen.
-  vec3 p = (extent > 0.0 ? maps.from_scene : maps.from_objects) + maps.plane * (maps.bias * tile_blur.w * CASTER_SLACK);
-  vec3 u = abs(to_light.y) < 0.9 ? vec3(to_light.z, 0.0, -to_light.x) : vec3(0.0, -to_light.z, to_light.y);
-  u *= inversesqrt(dot(u, u));
-  vec3 v = cross(to_light, u);
-  vec2 place = vec2(dot(u, p), dot(v, p)) * fit.xy + fit.zw;
-  vec2 inside = clamp(place, 0.5 * texel, 1.0 - 0.5 * texel);
-  vec2 at = (tile_blur.xy + inside * tile_blur.z) * atlas_side - 0.5;
-  vec2 corner = floor(at);
-  vec2 part = at - corner;
-  vec4 depths = textureGather(shadow_maps, (corner + 1.0) / atlas_side);
-  float depth = 0.5 - dot(to_light, p) / size - DEPTH_SLACK;
-  float cosine = max(dot(maps.plane, to_light), LEAST_COSINE);
-  vec2 slope = vec2(dot(u, maps.plane), dot(v, maps.plane)) * texel / (fit.xy * (size * cosine)) * maps.bias;
-  vec2 low = -part * slope, high = low + slope;
-  vec4 plane = depth + vec4(low.x, high.x, high.x, low.x) + vec4(high.y, high.y, low.y, low.y);
-  vec4 lit4 = step(min(plane, 1.0), depths);
-  vec2 row = mix(lit4.wx, lit4.zy, part.x);
-  float lit = mix(row.x, row.y, part.y);
-  // The side of a support that a light behind it sees: nothing of the scene is on that side.
-  return inside == place && !(maps.behind_support && extent > 0.0) ? lit : 1.0;
 }
 
 void main() {
@@ -136,13 +105,12 @@ void main() {
   vec4 position_material = texelFetch(position_material_map, at, 0);
   uvec4 packed_surface = texelFetch(surface_map, at, 0);
   Surface s = unpack(position_material, packed_surface);
+  vec3 plane = from_octahedral(vec2(packed_surface.w >> 10 & 2047u, packed_surface.w >> 21) * (2.0 / 2047.0) - 1.0);
+#if HAS_SHADOWS
   uint in_shadow_maps = packed_surface.w & 3u;
-  Maps maps;
-  maps.from_objects = position_material.xyz - objects_centre;
-  maps.from_scene = position_material.xyz - scene_centre;
-  maps.bias = in_shadow_maps == 1u ? 1.0 : 0.0;
-  maps.behind_support = in_shadow_maps == 2u;
-  maps.plane = from_octahedral(vec2(packed_surface.w >> 10 & 2047u, packed_surface.w >> 21) * (2.0 / 2047.0) - 1.0);
+  Maps maps = Maps(position_material.xyz - objects_centre, position_material.xyz - scene_centre,
+                   in_shadow_maps == 1u ? 1.0 : 0.0, in_shadow_maps == 2u, plane);
+#endif
   int first = 0, step = 1, end = light_count;
   vec3 sum = vec3(0.0);
 #if LIGHT_PASS == SUBSETS
@@ -161,7 +129,7 @@ void main() {
 #endif
 #endif
 #if LIGHT_PASS == FILTERED
-  Subsets weak = gather_subsets(at, s.normal, maps.plane, position_material.xyz - eye, uint(position_material.w));
+  Subsets weak = gather_subsets(at, s.normal, plane, position_material.xyz - eye, uint(position_material.w));
   bool wide = s.phong ? s.exponent <= WIDEST_EXPONENT : s.alpha2 >= LEAST_ALPHA2;
   if (weak.found >= LEAST_FOUND && (wide || s.specular == vec3(0.0))) {
     end = strong_count;
@@ -173,15 +141,17 @@ void main() {
     vec4 light = lights[i].illuminance_texel;
     vec3 to_light = to_light_extent.xyz;
     float cosine = max(dot(s.normal, to_light), 0.0);
+    vec4 tile_spread = lights[i].tile_spread;
+    float spread = tile_spread.w;
 #if HAS_SHADOWS
-    light.rgb *= visibility(maps, lights[i].tile_blur, lights[i].fit, light.w, to_light, to_light_extent.w);
+    light.rgb *= visibility(maps, tile_spread, lights[i].fit, light.w, to_light, to_light_extent.w);
 #endif
 #if LIGHT_PASS == SUBSETS
-    vec3 of_lobe = reflectance(lobe, to_light, cosine);
+    vec3 of_lobe = reflectance(lobe, to_light, cosine, spread);
     sum += light.rgb * cosine * of_lobe;
-    matt_sum += light.rgb * cosine * (reflectance(matt, to_light, cosine) - of_lobe);
+    matt_sum += light.rgb * cosine * (reflectance(matt, to_light, cosine, spread) - of_lobe);
 #else
-    sum += light.rgb * cosine * reflectance(s, to_light, cosine);
+    sum += light.rgb * cosine * reflectance(s, to_light, cosine, spread);
 #endif
   }
 #if LIGHT_PASS == SUBSETS
