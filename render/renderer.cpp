@@ -13,6 +13,8 @@
 namespace lightwell::render {
 namespace {
 
+constexpr const char* kSoftwareRenderers[] = {"llvmpipe", "softpipe", "SwiftShader"};
+
 double now_ms() {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
       .count();
@@ -46,8 +48,9 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   r.nothing_casts_ = atlas->empty() && cutouts->empty();
   auto tone_mapper = ToneMapper::create();
   if (!tone_mapper) return tone_mapper.error();
-  auto surfaces = SurfaceShading::create(scene, r.nothing_casts_,
-                                         {options.simplify_casters, options.soft_edges, options.interleave});
+  auto surfaces = SurfaceShading::create(
+      scene, r.nothing_casts_,
+      {options.simplify_casters, options.soft_edges.value_or(!draws_in_software()), options.interleave});
   if (!surfaces) return surfaces.error();
   auto background = gl::make_program("fullscreen_vertex", "background_fragment");
   if (!background) return background.error();
@@ -301,6 +304,12 @@ RadiancePicture Renderer::radiance() const {
 
 std::string Renderer::gl_renderer() {
   return reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+}
+
+bool Renderer::draws_in_software() {
+  const std::string name = gl_renderer();
+  return std::any_of(std::begin(kSoftwareRenderers), std::end(kSoftwareRenderers),
+                     [&](const char* part) { return name.find(part) != std::string::npos; });
 }
 
 int Renderer::size_limit() {
