@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <vector>
+
+#include "render/cbor_shape.h"
 
 namespace lightwell::render {
 namespace {
@@ -14,7 +17,7 @@ constexpr std::size_t kHeader = 16;
 constexpr std::size_t kLongestSample = std::size_t{1} << 20;
 constexpr std::uint8_t kJson = 1;
 constexpr std::uint8_t kCbor = 2;
-constexpr int kDeepest = 32;  // of CBOR, whose reader recurs; samples need six
+constexpr std::size_t kDeepest = 32;  // of CBOR, whose reader recurs; samples need six
 
 Error bad(const std::string& what) {
   return {ErrorKind::bad_input, "OpenTrackIO: " + what};
@@ -132,34 +135,11 @@ Result<Sample> read_sample(const json& root) {
   return sample;
 }
 
-// Stops a reader at what is nested too deep, and keeps nothing.
-class DepthLimit final : public nlohmann::json_sax<json> {
- public:
-  bool null() override { return true; }
-  bool boolean(bool /*value*/) override { return true; }
-  bool number_integer(number_integer_t /*value*/) override { return true; }
-  bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
-  bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return true; }
-  bool string(string_t& /*value*/) override { return true; }
-  bool binary(binary_t& /*value*/) override { return true; }
-  bool key(string_t& /*value*/) override { return true; }
-  bool start_object(std::size_t /*size*/) override { return ++depth_ <= kDeepest; }
-  bool start_array(std::size_t /*size*/) override { return ++depth_ <= kDeepest; }
-  bool end_object() override { return depth_-- > 0; }
-  bool end_array() override { return depth_-- > 0; }
-  bool parse_error(std::size_t /*at*/, const std::string& /*token*/,
-                   const nlohmann::detail::exception& /*why*/) override {
-    return false;
-  }
-
- private:
-  int depth_ = 0;
-};
-
+// The library recurs with what it reads, within strings before any limit could stop it.
 json parse_cbor(const std::string& payload) {
-  DepthLimit limit;
-  if (!json::sax_parse(payload, &limit, json::input_format_t::cbor)) return json(json::value_t::discarded);
-  return json::from_cbor(payload, true, false);
+  const std::vector<std::uint8_t> bytes(payload.begin(), payload.end());
+  if (!is_shallow_cbor(bytes, kDeepest)) return json(json::value_t::discarded);
+  return json::from_cbor(bytes, true, false);
 }
 
 Result<Sample> decode(const std::string& payload, std::uint8_t encoding) {

@@ -221,6 +221,16 @@ void tracking(const std::filesystem::path& folder) {
   write(folder / "opentrackio.cbor",
         std::string(1, '\x02') + "\xBF\x6Atransforms\x81\xA1\x6Btranslation\xA3\x61x\xF9\x3E" +
             std::string(1, '\0') + "\x61y\x21\x61z\xFA\x3E\x80" + std::string(2, '\0') + "\xFF");
+  const std::string chunks = "\x7F\x64" + std::string("lens") + "\x60\xFF";  // of a text of no given length
+  write(folder / "opentrackio_chunks.cbor", std::string(1, '\2') + "\xA1" + chunks + "\x5F\x41\x01\xFF");
+  for (const char* byte :
+       {"5F", "7F", "9F", "BF", "81", "A1", "C0"}) {  // what may nest, and bytes and texts must not
+    const auto nested = static_cast<char>(std::stoi(byte, nullptr, 16));
+    write(folder / (std::string("opentrackio_nested_") + byte),
+          std::string(1, '\2') + std::string(64, nested));
+    write(folder / (std::string("opentrackio_nested_value_") + byte),
+          std::string(1, '\2') + "\xA1\x64lens" + std::string(64, nested));
+  }
 }
 
 }  // namespace

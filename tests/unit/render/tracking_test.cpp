@@ -272,6 +272,24 @@ TEST(OpenTrackIo, MalformedCborIsRefusedAndTheNextIsRead) {
   expect_sample(reader.take(datagram(good, 0, true, 2)));
 }
 
+// As root, key and value; the largest datagram, and as much as segments may hold.
+TEST(OpenTrackIo, CborNestedWithoutEndIsRefusedAndTheNextIsRead) {
+  const std::string good = cbor(kSample);
+  OpenTrackIoReader reader;
+  for (const unsigned byte : {0x5Fu, 0x7Fu, 0x9Fu, 0xBFu, 0x81u, 0xA1u, 0xC0u})
+    for (const std::size_t count : {30'000u, 1'000'000u})
+      for (const std::string head : {"", "\xA1", "\xA1\x64lens"}) {
+        const std::string payload = head + std::string(count, static_cast<char>(byte));
+        constexpr std::uint32_t kSegment = 32'000;
+        for (std::uint32_t at = 0; at < payload.size(); at += kSegment) {
+          const bool last = at + kSegment >= payload.size();
+          const auto taken = reader.take(datagram(payload.substr(at, kSegment), at, last, 2));
+          ASSERT_EQ(taken.ok(), !last) << byte << ", " << count << " of them, byte " << at;
+        }
+        expect_sample(reader.take(datagram(good, 0, true, 2)));
+      }
+}
+
 TEST(Tracking, OptionsNameProtocolAndAddress) {
   const auto freed_options = parse_tracking("freed:127.0.0.1:6301");
   ASSERT_TRUE(freed_options.ok());
