@@ -7,43 +7,33 @@
 #include <vector>
 
 #include "lighting/result.h"
+#include "lighting/second_moment.h"
 
 namespace lightwell {
 namespace {
 
-// Of a light and what is folded into it, each weighted as lighting/decomposition/angular_radius.h weights bins: by its
-// light times its radiance. A point counts as a disc of 1°, so that two of them are as wide as they are apart.
-class FoldedSize {
- public:
-  void add(double luminance, double radius_rad, double distance) {
-    constexpr double kPoint = 0.0175;
-    const double weight = luminance * (luminance / (radius_rad * radius_rad + kPoint * kPoint));
-    weight_ += weight;
-    moment_ += weight * (distance * distance + radius_rad * radius_rad / 2);
-  }
-  [[nodiscard]] float radius_rad() const {
-    return weight_ > 0 ? static_cast<float>(std::min(std::sqrt(2 * moment_ / weight_), 1.0)) : 0.0f;
-  }
-
- private:
-  double weight_ = 0, moment_ = 0;
-};
+// A point counts as a disc of 1°, so that two of them are as wide as they are apart.
+double solid_angle_sr(const DirectionalLight& light) {
+  constexpr double kPoint = 0.0175;
+  const double radius = std::max(static_cast<double>(light.angular_radius_rad), kPoint);
+  return kPi * radius * radius;
+}
 
 // changed: of the folded lights, those into which others went
 void fold_sizes(const LightSet& set, const std::vector<bool>& changed, LightSet& folded) {
   const std::size_t count = folded.lights.size();
-  std::vector<FoldedSize> sizes(count);
+  std::vector<SecondMoment> sizes(count);
   std::vector<std::size_t> shown_by(set.lights.size());
   for (std::size_t i = 0; i < set.lights.size(); ++i) {
     const DirectionalLight& light = set.lights[i];
     shown_by[i] = i < count ? i : shown_by[static_cast<std::size_t>(light.parent)];
     const auto distance =
         static_cast<double>((light.direction - folded.lights[shown_by[i]].direction).norm());
-    sizes[shown_by[i]].add(luminance(Rgbd(light.illuminance.cast<double>())),
-                           static_cast<double>(light.angular_radius_rad), distance);
+    sizes[shown_by[i]].add(luminance(Rgbd(light.illuminance.cast<double>())), solid_angle_sr(light),
+                           distance);
   }
   for (std::size_t i = 0; i < count; ++i)
-    if (changed[i]) folded.lights[i].angular_radius_rad = sizes[i].radius_rad();
+    if (changed[i]) folded.lights[i].angular_radius_rad = sizes[i].disc_radius_rad();
 }
 
 // Children into parents from last to first; a light's direction is the luminance-weighted mean of what it

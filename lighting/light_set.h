@@ -20,7 +20,7 @@ struct DirectionalLight {
   // Relative RMSE of shadows (lighting/evaluation/evaluate.h) predicted for a reader that takes the lights up to this
   // one; 0: not predicted
   float predicted_error = 0;
-  // Of an even disc as wide as what the light stands for (lighting/decomposition/angular_radius.h): shadows have an edge
+  // Of an even disc as wide as what the light stands for (lighting/second_moment.h): shadows have an edge
   // so soft, highlights are so much wider; 0: a point, or not known
   float angular_radius_rad = 0;
 };

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "lighting/decomposition/angular_radius.h"
+#include "lighting/second_moment.h"
 
 namespace lightwell::render {
 namespace {

@@ -29,16 +29,15 @@ double luminance_of(const LightRow& row) {
          0.0722 * static_cast<double>(row.illuminance[2]);
 }
 
-// Of each light and those beside it.
-std::vector<double> strengths_of(std::span<const LightRow> rows) {
+// Of each row and what is beside it among all lights, itself too.
+std::vector<double> strengths_of(std::span<const LightRow> rows, std::span<const LightRow> all) {
   const auto least_cosine = static_cast<float>(std::cos(kBesideDeg * kPi / 180));
   std::vector<double> strengths(rows.size(), 0.0);
   for (std::size_t i = 0; i < rows.size(); ++i)
-    for (std::size_t k = 0; k < rows.size(); ++k) {
+    for (const LightRow& other : all) {
       const float* a = rows[i].to_light;
-      const float* b = rows[k].to_light;
-      if (i == k || a[0] * b[0] + a[1] * b[1] + a[2] * b[2] >= least_cosine)
-        strengths[i] += luminance_of(rows[k]);
+      const float* b = other.to_light;
+      if (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] >= least_cosine) strengths[i] += luminance_of(other);
     }
   return strengths;
 }
@@ -77,15 +76,11 @@ std::uint64_t along_curve(const LightRow& row) {
 
 }  // namespace
 
-double power_of(std::span<const LightRow> rows) {
-  double sum = 0;
-  for (const LightRow& row : rows) sum += luminance_of(row);
-  return sum;
-}
-
-std::size_t arrange_subsets(std::span<LightRow> rows, double power, int side) {
+std::size_t arrange_subsets(std::span<LightRow> rows, std::span<const LightRow> all, int side) {
   if (side < 2) return rows.size();
-  const std::vector<double> strengths = strengths_of(rows);
+  const std::vector<double> strengths = strengths_of(rows, all);
+  double power = 0;
+  for (const LightRow& row : all) power += luminance_of(row);
   std::vector<LightRow> strong, weak;
   for (std::size_t i = 0; i < rows.size(); ++i)
     (strengths[i] > kStrongShare * power ? strong : weak).push_back(rows[i]);

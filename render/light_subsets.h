@@ -16,10 +16,7 @@ namespace lightwell::render {
 // Puts the strong lights first, in their order, then the weak ones along a curve through all directions, so that every
 // side²-th of them, from any on, are spread over all that the weak come from. Returns how many are strong: all where side is
 // 1, or where the weak are too few for the subsets.
-// power: of all lights of the picture (power_of), of which rows may be a part
-std::size_t arrange_subsets(std::span<LightRow> rows, double power, int side);
-
-// Of all these lights, as luminance.
-double power_of(std::span<const LightRow> rows);
+// all: the picture's lights, of which rows may be a part
+std::size_t arrange_subsets(std::span<LightRow> rows, std::span<const LightRow> all, int side);
 
 }  // namespace lightwell::render

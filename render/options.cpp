@@ -100,8 +100,7 @@ Parsed parse_options(int argc, const char* const* argv) {
       ->capture_default_str();
   app.add_option_function<std::string>(
          "--shadow-edges", [&](const std::string& edges) { options.soft_edges = edges == "soft"; },
-         "soft: as wide as what each light stands for makes them; hard: a point's (default: soft where a GPU "
-         "draws)")
+         "soft: as wide as what each light stands for makes them; hard: a point's (default)")
       ->check(CLI::IsMember({"soft", "hard"}));
   app.add_option(
          "--interleave", options.interleave,

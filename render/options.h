@@ -31,8 +31,8 @@ struct Options {
   std::optional<double> max_error;   // predicted: kept by the fewest lights
   int shadow_maps = 0;               // 0: all lights, live 72
   int shadow_size = 256;
-  std::optional<bool> soft_edges;  // as RendererOptions's
-  int interleave = 2;              // pixels a side that share the weak lights; 1: none do
+  bool soft_edges = false;
+  int interleave = 2;  // pixels a side that share the weak lights; 1: none do
   int width = 640;
   int height = 480;
   bool size_given = false;  // else a plate's own

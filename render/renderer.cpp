@@ -13,8 +13,6 @@
 namespace lightwell::render {
 namespace {
 
-constexpr const char* kSoftwareRenderers[] = {"llvmpipe", "softpipe", "SwiftShader"};
-
 double now_ms() {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
       .count();
@@ -48,9 +46,8 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   r.nothing_casts_ = atlas->empty() && cutouts->empty();
   auto tone_mapper = ToneMapper::create();
   if (!tone_mapper) return tone_mapper.error();
-  auto surfaces = SurfaceShading::create(
-      scene, r.nothing_casts_,
-      {options.simplify_casters, options.soft_edges.value_or(!draws_in_software()), options.interleave});
+  auto surfaces = SurfaceShading::create(scene, r.nothing_casts_,
+                                         {options.simplify_casters, options.soft_edges, options.interleave});
   if (!surfaces) return surfaces.error();
   auto background = gl::make_program("fullscreen_vertex", "background_fragment");
   if (!background) return background.error();
@@ -188,7 +185,6 @@ Status Renderer::render_samples(std::span<LightRow> all, const LightSet& lights,
   const int samples = end_sample - first_sample;
   const float weight = 1 / static_cast<float>(samples);
   double time = now_ms();
-  const double power = power_of(all);
   bool start_sum = true;
   // At least once, so that ambient light and background are drawn without any light.
   for (std::size_t first = 0; first == 0 || first < all.size(); first += atlas_.capacity()) {
@@ -198,7 +194,7 @@ Status Renderer::render_samples(std::span<LightRow> all, const LightSet& lights,
     for (const ShadowAtlas::Block& block : *blocks) {
       const auto rows = turn.subspan(block.first, block.count);
       const bool first_block = first == 0 && block.first == 0;
-      surfaces_.set_lights(rows, power, block.page);
+      surfaces_.set_lights(rows, all, block.page);
       time = lap(time, times_.shadow_ms);
       for (int sample = first_sample; sample < end_sample; ++sample) {
         const View view =
@@ -304,12 +300,6 @@ RadiancePicture Renderer::radiance() const {
 
 std::string Renderer::gl_renderer() {
   return reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-}
-
-bool Renderer::draws_in_software() {
-  const std::string name = gl_renderer();
-  return std::any_of(std::begin(kSoftwareRenderers), std::end(kSoftwareRenderers),
-                     [&](const char* part) { return name.find(part) != std::string::npos; });
 }
 
 int Renderer::size_limit() {

@@ -30,9 +30,8 @@ struct RendererOptions {
   bool texels_by_power =
       true;  // strong lights have maps of up to kLargestMap times the side, weak ones smaller ones
   bool simplify_casters = true;  // shadows of simpler meshes, a quarter of a map's texel off at most
+  bool soft_edges = false;       // of shadows, as wide as their lights make them; else those of points
   // Pixels a side of the square over which weak lights are spread, 1, 2 or 4; 1: each pixel takes all lights.
-  // Edges of shadows as wide as their lights make them. Not said: where a GPU draws; software takes four times as long.
-  std::optional<bool> soft_edges;
   int interleave = 2;
   bool measure_passes = false;  // waits for each pass, to time it
 };
@@ -94,8 +93,6 @@ class Renderer {
   [[nodiscard]] int largest_map() const { return atlas_.largest(); }
   [[nodiscard]] const PassTimes& pass_times() const { return times_; }
   [[nodiscard]] static std::string gl_renderer();
-  // Mesa's llvmpipe and softpipe, SwiftShader
-  static bool draws_in_software();
   // Largest side of a picture.
   [[nodiscard]] static int size_limit();
 

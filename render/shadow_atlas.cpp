@@ -171,6 +171,7 @@ std::vector<ShadowAtlas::Block> ShadowAtlas::place_rows(std::span<LightRow> rows
     const LightRow shown = row;
     row = tile.row;
     std::copy_n(shown.illuminance, 3, row.illuminance);
+    row.spread = shown.spread;
     row.tile[0] = static_cast<float>(tile.place.at.x) / whole;
     row.tile[1] = static_cast<float>(tile.place.at.y) / whole;
     row.tile[2] = static_cast<float>(tile.side) / whole;

@@ -16,9 +16,9 @@ namespace {
 // A map smaller than this would be border for the most part.
 constexpr int kLeastMap = 64;
 // map_size over the side of the weakest lights' maps.
-// A soft edge at a quarter of what casts, in texels of a map of 256, is so many times the light's radius.
-constexpr double kMapsEdges = 128;
 constexpr int kSmallestMap = 4;
+// A soft edge at a quarter of what casts, in texels of a map of 256, is so many times the light's radius.
+constexpr double kEdgeTexels = 128;
 
 double luminance_of(const LightRow& row) {
   return 0.2126 * static_cast<double>(row.illuminance[0]) + 0.7152 * static_cast<double>(row.illuminance[1]) +
@@ -27,7 +27,7 @@ double luminance_of(const LightRow& row) {
 
 // What is seen of a light's shadow: on the ground, and a little on what stands upright.
 double weight_of(const LightRow& row) {
-  const double soft = 1 + kMapsEdges * static_cast<double>(row.spread);
+  const double soft = 1 + kEdgeTexels * static_cast<double>(row.spread);
   return luminance_of(row) * (0.2 + 0.8 * std::max(0.0, static_cast<double>(row.to_light[1]))) / soft;
 }
 

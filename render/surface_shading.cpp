@@ -109,9 +109,10 @@ Status SurfaceShading::resize(int width, int height, GLuint depth) {
   return {};
 }
 
-void SurfaceShading::set_lights(std::span<const LightRow> lights, double power, int shadow_page) {
+void SurfaceShading::set_lights(std::span<const LightRow> lights, std::span<const LightRow> all,
+                                int shadow_page) {
   std::vector<LightRow> rows(lights.begin(), lights.end());
-  const std::size_t strong = arrange_subsets(rows, power, interleave_);
+  const std::size_t strong = arrange_subsets(rows, all, interleave_);
   glBindBuffer(GL_UNIFORM_BUFFER, light_block_.id());
   glBufferSubData(GL_UNIFORM_BUFFER, 0, static_cast<GLsizeiptr>(rows.size() * sizeof(LightRow)), rows.data());
   shadow_page_ = shadow_page;
@@ -120,6 +121,8 @@ void SurfaceShading::set_lights(std::span<const LightRow> lights, double power, 
   weak_illuminance_ = Rgb::Zero();
   for (std::size_t i = strong; i < rows.size(); ++i)
     weak_illuminance_ += Eigen::Map<const Rgb>(rows[i].illuminance);
+  // A channel may have no light: what the shaders divide by it stays finite, and 0.
+  weak_illuminance_ = weak_illuminance_.max(1e-30f);
 }
 
 void SurfaceShading::shade(bool shadows, const Sample& sample, const Target& target, const GBuffer& gbuffer,

@@ -31,8 +31,8 @@ class SurfaceShading {
   Status make_unshadowed();
 
   // The lights that shade() draws, at most kMaxLightsPerBlock, with their maps, all on one page of the atlas.
-  // power: of all blocks' lights (power_of)
-  void set_lights(std::span<const LightRow> lights, double power, int shadow_page);
+  // all: of the picture, among them these
+  void set_lights(std::span<const LightRow> lights, std::span<const LightRow> all, int shadow_page);
 
   struct Target {
     GLuint framebuffer;  // with the G-buffer's depth

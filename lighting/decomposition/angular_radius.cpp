@@ -8,21 +8,9 @@
 
 #include "lighting/decomposition/lit_bins.h"
 #include "lighting/decomposition/voronoi_cells.h"
+#include "lighting/second_moment.h"
 
 namespace lightwell {
-
-void SecondMoment::add(double luminance, double solid_angle_sr, double distance) noexcept {
-  if (!(luminance > 0 && solid_angle_sr > 0)) return;
-  const double weight = luminance * (luminance / solid_angle_sr);
-  // The part itself is wide: a disc of solid angle Ω has Ω/2π around its middle.
-  weight_ += weight;
-  moment_ += weight * (distance * distance + solid_angle_sr / (2 * kPi));
-}
-
-float SecondMoment::disc_radius_rad() const noexcept {
-  if (empty()) return 0;
-  return std::min(static_cast<float>(std::sqrt(2 * moment_ / weight_)), kLargestAngularRadius);
-}
 
 void set_angular_radii(const PolarMap& map, std::span<DirectionalLight> lights) {
   const LitBins bins = lit_bins(map);

@@ -160,7 +160,6 @@ struct BestLights::State {
     for (const auto& [light, place] : pairs) {
       moved.push_back(light);
       lights.set(light, places[static_cast<std::size_t>(place)]);
-      sizes.forget(light);
       sound = powers.move(light, lights.directions()) && sound;
       map_potentials(light, light + 1);
       error.look_from(lights, light);
@@ -232,8 +231,8 @@ struct BestLights::State {
       tree.build(now);
     grown = true;
     if (!looked) search.look(atoms, lights, true);
+    sizes.follow(atoms, search, lights, looked ? std::span<const int>(moved) : std::span<const int>());
     looked = false;
-    sizes.follow(atoms, search);
     const double cost = search.cell_cost(atoms, luminance_power);
     cuts.shown(cost);
     predict_errors(atoms, cost, tree.costs(), predicted);
@@ -267,6 +266,7 @@ struct BestLights::State {
         place_at(descend_lights(atoms, lights.directions(), grid.theta_max_rad, kSteps));
     }
     snap_to_bright();
+    sizes.forget();
     looked = false;
     settling = false;
     grown = false;

@@ -5,7 +5,7 @@
 // white matt surface would return) in halves, and what the lobe returns in 9 bits a channel with a shared exponent; the
 // normal as an octahedral pair of 8 bits; 24 bits of the depth, 8 of the material's number.
 uniform int strong_count;
-uniform vec3 weak_illuminance;  // all weak lights'
+uniform vec3 weak_illuminance;  // all weak lights', and so much that its inverse is finite
 uniform vec3 view_axis;                             // unit
 uniform vec3 view_forward, view_right, view_up;  // a point is the eye's, and its depth times these
 uniform highp usampler2D subset_map;
@@ -52,7 +52,7 @@ uvec4 pack_subset(vec3 diffuse, vec3 specular, vec3 normal, vec3 from_eye, uint 
   vec3 n = normal / (abs(normal.x) + abs(normal.y) + abs(normal.z));
   if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
   uvec2 p = uvec2((n.xy * 0.5 + 0.5) * 255.0 + 0.5);
-  vec3 scale = kScale / max(weak_illuminance, 1e-37);
+  vec3 scale = kScale / weak_illuminance;
   diffuse *= scale;
   return uvec4(packHalf2x16(diffuse.rg), packHalf2x16(vec2(diffuse.b, 0.0)) | p.x << 16 | p.y << 24,
                pack_shared(specular * scale),
@@ -89,10 +89,9 @@ Subsets gather_subsets(ivec2 at, vec3 normal, vec3 plane, vec3 from_eye, uint ma
           float away = uintBitsToFloat(p.w & 0xffffff00u) * (toward + dot(slope, vec2(there - at))) - depth * toward;
           bool same = there == inside && (p.w & 255u) == (material & 255u) && abs(away) <= off && along > 0.0 &&
                       along * along > SAME_NORMAL * SAME_NORMAL * dot(n, n);
-          float one = same ? 1.0 : 0.0;
-          of_diffuse += vec3(unpackHalf2x16(p.x), unpackHalf2x16(p.y).x) * one;
-          of_specular += unpack_shared(p.z) * one;
-          count += one;
+          of_diffuse += same ? vec3(unpackHalf2x16(p.x), unpackHalf2x16(p.y).x) : vec3(0.0);
+          of_specular += same ? unpack_shared(p.z) : vec3(0.0);
+          count += same ? 1.0 : 0.0;
         }
       float share = 1.0 / max(count, 1.0);
       diffuse += of_diffuse * share;

@@ -56,8 +56,9 @@ const int kLooks = 12;
 const vec3 kSearch[kLooks] = vec3[](vec3(0.0400, 0.0000, 0.0400), vec3(-0.0395, 0.0362, 0.0536), vec3(0.0063, -0.0715, 0.0718), vec3(0.0586, 0.0764, 0.0962), vec3(-0.1270, -0.0225, 0.1289), vec3(0.1458, -0.0927, 0.1728), vec3(-0.0601, 0.2236, 0.2315), vec3(-0.1430, -0.2753, 0.3102), vec3(0.3904, 0.1426, 0.4157), vec3(-0.5148, 0.2125, 0.5570), vec3(0.3163, -0.6760, 0.7463), vec3(0.2993, 0.9542, 1.0000));  // z: length
 const vec2 kFilter[kLooks] = vec2[](vec2(0.2041, 0.0000), vec2(-0.2607, 0.2388), vec2(0.0399, -0.4547), vec2(0.3286, 0.4286), vec2(-0.6030, -0.1067), vec2(0.5712, -0.3634), vec2(-0.1911, 0.7107), vec2(-0.3644, -0.7016), vec2(0.7906, 0.2887), vec2(-0.8224, 0.3395), vec2(0.3965, -0.8472), vec2(0.2930, 0.9341));
 
-// reach: of the map's square, for a metre toward the light, to the edge of the light's disc
-float soft_visibility(BeforeMap b, vec2 reach, vec3 to_light, float size, float blur) {
+// reach: of the map's square, for a metre toward the light, to the edge of the light's disc; slack: metres toward the light
+// in which the disc widens by a texel
+float soft_visibility(BeforeMap b, vec2 reach, vec3 to_light, float size, float slack) {
   // Every light has the pattern turned another way, so that what it misses differs.
   float turn = 97.0 * dot(to_light, vec3(1.0, 1.3, 1.7));
   mat2 turned = mat2(cos(turn), sin(turn), -sin(turn), cos(turn));
@@ -67,7 +68,7 @@ float soft_visibility(BeforeMap b, vec2 reach, vec3 to_light, float size, float 
     Texels t = texels_at(b, b.place + reach * (turned * kSearch[k].xy) * front);
     vec4 height = (b.depth - t.depths) * size;
     // What is nearer than where the cone to the light's disc is so wide does not cover it.
-    vec4 blocks = (1.0 - step(t.planes, t.depths)) * step(vec4(front * kSearch[k].z), height + blur);
+    vec4 blocks = (1.0 - step(t.planes, t.depths)) * step(vec4(front * kSearch[k].z), height + slack);
     heights += t.inside ? dot(blocks, max(height, 0.0)) : 0.0;
     blockers += t.inside ? dot(blocks, vec4(1.0)) : 0.0;
   }
@@ -98,8 +99,9 @@ float visibility(Maps maps, vec4 tile_spread, vec4 fit, float texel, vec3 to_lig
   b.tile = tile_spread.xyz;
   b.texel = texel;
 #if SOFT_EDGES
-  float spread = tile_spread.w;
-  if (spread * b.depth * size >= blur) return soft_visibility(b, fit.xy * spread, to_light, size, blur);
+  // Beyond it twelve looks are too far apart to know a shadow by.
+  float spread = min(tile_spread.w, 0.25);
+  if (spread * b.depth * size >= blur) return soft_visibility(b, fit.xy * spread, to_light, size, blur / spread);
 #endif
   return lit_at(b, b.place);
 }

@@ -28,11 +28,14 @@ PlaceSearch::PlaceSearch(int lights, int atoms)
   places_.reserve(static_cast<std::size_t>(most_places(lights)));
 }
 
+int PlaceSearch::middle(const Atoms& atoms) {
+  return atoms.padded() / 2 / placement_kernel::kLanes * placement_kernel::kLanes;
+}
+
 void PlaceSearch::look(const Atoms& atoms, const PlacedLights& lights, bool all) noexcept {
   const bool by_halves = lights.count() > kAllAtomsUpTo && !all;
-  const int middle = atoms.padded() / 2 / placement_kernel::kLanes * placement_kernel::kLanes;
-  begin_ = by_halves && second_half_ ? middle : 0;
-  end_ = by_halves && !second_half_ ? middle : atoms.padded();
+  begin_ = by_halves && second_half_ ? middle(atoms) : 0;
+  end_ = by_halves && !second_half_ ? middle(atoms) : atoms.padded();
   second_half_ = !second_half_;
   auto points = atoms.points();
   points.x += begin_, points.y += begin_, points.z += begin_, points.s += begin_;

@@ -25,12 +25,18 @@ class PlaceSearch {
   [[nodiscard]] std::span<const Vec3d> places() const { return places_; }
   [[nodiscard]] const Atoms& place_points() const { return place_points_; }
 
-  // f(atom, its light, their distance) for every atom that was looked at.
-  template <class F>
-  void for_each_atom(const F& f) const {
-    for (auto k = static_cast<std::size_t>(begin_); k < static_cast<std::size_t>(end_); ++k)
-      f(k, static_cast<std::size_t>(nearest_[k]), distance_[k]);
+  // Of an atom, as it was last looked at: its light, and their distance (chord).
+  struct Served {
+    int light;
+    float distance;
+  };
+  [[nodiscard]] Served served(int atom) const {
+    const auto k = static_cast<std::size_t>(atom);
+    return {nearest_[k], distance_[k]};
   }
+  // With many lights the atoms before this one are looked at in one frame, the others in the next.
+  [[nodiscard]] static int middle(const Atoms& atoms);
+  [[nodiscard]] bool looked_at(int atom) const { return atom >= begin_ && atom < end_; }
 
   // What the lights leave to be shown wrongly, in luminance: Σ atom · power of its light · their distance, over the
   // atoms that were looked at. power: luminance

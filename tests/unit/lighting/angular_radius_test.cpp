@@ -101,20 +101,50 @@ TEST(AngularRadius, OfAFrameIsThatOfTheMapWithinWhatAtomsResolve) {
   EXPECT_LT(difference, 0.1 * sum);  // atoms are 3 to 12 degrees wide, cells 20
 }
 
-TEST(AngularRadius, DoesNotJumpFromFrameToFrame) {
-  PolarMap map = test::outdoor({90, 360, kPi / 2});
-  BestLights lights(map.grid, 64);
-  std::vector<DirectionalLight> before;
-  for (int frame = 0; frame < 40; ++frame) {
-    const auto out = lights.process(test::turned(map, frame));
-    const std::vector<DirectionalLight> now(out.begin(), out.end());
-    for (const DirectionalLight& a : before)
-      for (const DirectionalLight& b : now) {
-        if (a.id != b.id) continue;
-        // A fifth of the way to the largest size that light of a cell may have.
-        EXPECT_LT(std::abs(a.angular_radius_rad - b.angular_radius_rad), 0.2f * 0.5f);
+// A lamp of one bin in an even sky goes to another place, without a cut: its light there has its size from the first frame.
+TEST(AngularRadius, OfALightAtANewPlaceIsThatOfThePlaceAtOnce) {
+  const PolarGrid grid{90, 360, kPi / 2};
+  for (const int count : {64, 256}) {
+    BestLights lights(grid, count);
+    int arrived = 0;
+    for (int frame = 0; frame < 40; ++frame) {
+      const int sector = frame < 20 ? 40 : 220;
+      PolarMap map = test::constant_map(grid, Rgb::Ones());
+      test::set_bin(map, 45, sector, Rgb::Constant(600));
+      const auto out = lights.process(map);
+      const Vec3f lamp = grid.bin_direction(45, sector).cast<float>();
+      for (const DirectionalLight& light : out) {
+        if (light.direction.dot(lamp) < std::cos(0.001f) || frame < 20) continue;
+        ++arrived;
+        std::vector<DirectionalLight> exact(out.begin(), out.end());
+        set_angular_radii(map, exact);
+        const auto at = static_cast<std::size_t>(&light - out.data());
+        // A tenth, and what a cell has of sky beside its lamp while its bounds are those of atoms.
+        EXPECT_NEAR(light.angular_radius_rad, exact[at].angular_radius_rad,
+                    0.1f * exact[at].angular_radius_rad + 0.004f)
+            << count << " lights, frame " << frame;
       }
-    before = now;
+    }
+    EXPECT_GT(arrived, 10) << count;
+  }
+}
+
+TEST(AngularRadius, OfAMapThatStandsStillComesToRest) {
+  const PolarMap map = test::outdoor({90, 360, kPi / 2});
+  for (const int count : {8, 64, 200}) {
+    BestLights lights(map.grid, count);
+    std::vector<DirectionalLight> before;
+    for (int frame = 0; frame < 80; ++frame) {
+      const auto out = lights.process(map);
+      const std::vector<DirectionalLight> now(out.begin(), out.end());
+      for (const DirectionalLight& a : before)
+        for (const DirectionalLight& b : now) {
+          if (a.id != b.id || frame < 70) continue;
+          // .8⁷⁰ of any first difference; exchanges that still go on beside it move cells a little.
+          EXPECT_NEAR(a.angular_radius_rad, b.angular_radius_rad, 1e-3f) << count;
+        }
+      before = now;
+    }
   }
 }
 
@@ -128,11 +158,11 @@ TEST(AngularRadius, OfPointsThatAreFoldedIsAsWideAsTheyAreApart) {
                             .angular_radius_rad = radius};
   };
   set.lights = {at(40, -1, 0), at(50, 0, 0)};
-  // Two points at ±5°: a second moment of 5² is that of a disc of √2 · 5°.
-  EXPECT_NEAR(take_lights(set, 1).lights[0].angular_radius_rad, std::sqrt(2.0) * 5 * kDegree, 1e-3);
+  // Two points at ±5°, each a disc of 1°: a second moment of 5² + 1/2 is that of a disc of √51°.
+  EXPECT_NEAR(take_lights(set, 1).lights[0].angular_radius_rad, std::sqrt(51.0) * kDegree, 1e-4);
   set.lights = {at(40, -1, 0.1f), at(40, 0, 0.1f)};
   EXPECT_NEAR(take_lights(set, 1).lights[0].angular_radius_rad, 0.1f, 1e-6f);
-  // A sun of half of the light stays small beside a wide light: what is bright counts.
+  // What is bright counts: the light between a sun and a wide one is as wide as the sun is off it, √2 · 4°.
   set.lights = {at(40, -1, 0.005f), at(48, 0, 0.2f)};
   EXPECT_LT(take_lights(set, 1).lights[0].angular_radius_rad, 0.11f);
   EXPECT_EQ(take_lights(set, 2).lights[1].angular_radius_rad, 0.2f);

@@ -87,6 +87,28 @@ TEST_F(Interleaving, AllSubsetsTogetherAreAllLightsOnAPlane) {
   }
 }
 
+// A wall of red diodes: two channels of nothing, and next to nothing.
+TEST_F(Interleaving, AChannelWithoutLightIsBlackAndTheOthersAsTheyAre) {
+  Scene scene;
+  add_ground(scene, lambertian(Rgb::Constant(0.5f)));
+  for (const float least : {0.0f, 1e-36f}) {
+    LightSet lights = many_lights(72);
+    for (DirectionalLight& light : lights.lights) light.illuminance = Rgb(100, 0, least);
+    const SceneCamera camera = camera_at({0, 3, 0}, {0, 0, 0});
+    const auto exact = picture_of(scene, lights, camera, 1);
+    for (const int interleave : {2, 4}) {
+      const auto p = picture_of(scene, lights, camera, interleave);
+      for (int y = 0; y < p.height; ++y)
+        for (int x = 0; x < p.width; ++x) {
+          const Rgb value = rgb(p, x, y);
+          EXPECT_NEAR(value[0] / rgb(exact, x, y)[0], 1, kRounding);
+          EXPECT_EQ(value[1], 0);
+          EXPECT_TRUE(value[2] >= 0 && value[2] < 1e-30f) << value[2];
+        }
+    }
+  }
+}
+
 TEST_F(Interleaving, NothingLeaksAcrossAnEdgeOfDepthOrNormal) {
   Scene scene;
   // A step whose top is parallel to the ground, seen from above: only depth tells them apart; its sides by their normals.

@@ -159,6 +159,21 @@ TEST_F(ShadowCache, LightsOfManyPagesStandAndLightAsFewAtATime) {
   EXPECT_LE(std::sqrt(difference / of), 0.01);
 }
 
+// A map that stands says nothing of how wide its light is now.
+TEST_F(ShadowCache, ALightMayWidenWhileItsMapStands) {
+  for (Material& material : scene_.materials) {
+    material.specular = Rgb::Constant(0.5f);
+    material.exponent = 50;
+  }
+  auto there = renderer();
+  LightSet lights = some_lights(1, 20);
+  for (const float radius : {0.01f, 0.2f, 0.05f}) {
+    for (DirectionalLight& light : lights.lights) light.angular_radius_rad = radius;
+    ASSERT_TRUE(there.render(lights, camera_).ok());
+    expect_as_if_drawn_anew(there, lights, 0.001f);
+  }
+}
+
 TEST_F(ShadowCache, AnyHistoryGivesThePictureOfAFirstFrame) {
   auto there = renderer();
   for (unsigned frame = 0; frame < 12; ++frame) {

@@ -72,7 +72,7 @@ TEST_F(SoftShadows, AnEdgeIsAsWideAsTheLightIsFromTheHeightOfWhatCasts) {
       const double half_width = static_cast<double>(height * std::tan(radius));
       const double t = static_cast<double>(lit.x) / half_width;
       const double difference = std::abs(static_cast<double>(lit.visible) - beyond_edge(t));
-      // Six looks are steps of a sixth; a texel is a fiftieth of the narrower edge.
+      // Three of the twelve looks.
       EXPECT_LT(difference, 0.25) << height << " " << t;
       if (std::abs(t) > 1.1) {
         EXPECT_LT(difference, 1e-3) << height << " " << t;
