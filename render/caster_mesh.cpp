@@ -146,12 +146,15 @@ std::vector<Index> in_patches(std::span<const Index> triangles, std::span<const 
     low = low.cwiseMin(positions[i]);
     high = high.cwiseMax(positions[i]);
   }
-  const float scale =
-      ((1 << kBits) - 1) / std::max((high - low).maxCoeff(), std::numeric_limits<float>::min());
+  // Doubles: the least and the largest extent of floats have a reciprocal and a difference, and none is times none.
+  const Vec3d base = low.cast<double>();
+  const double extent = (high.cast<double>() - base).maxCoeff();
+  const double scale =
+      ((1 << kBits) - 1) / std::max(extent, static_cast<double>(std::numeric_limits<float>::denorm_min()));
   std::vector<std::pair<Index, Index>> order;
   order.reserve(triangles.size() / 3);
   for (std::size_t t = 0; t < triangles.size(); t += 3) {
-    const Vec3f at = (positions[triangles[t]] - low) * scale;
+    const Vec3d at = (positions[triangles[t]].cast<double>() - base) * scale;
     Index code = 0;
     for (int bit = kBits - 1; bit >= 0; --bit)
       for (int i = 0; i < 3; ++i) code = code << 1 | (static_cast<Index>(at[i]) >> bit & 1);
@@ -235,8 +238,11 @@ class Patches {
   [[nodiscard]] std::vector<Index> with_neighbours(std::span<const Index> patch) const {
     const auto first = static_cast<Index>((patch.data() - triangles_.data()) / 3);
     const auto end = static_cast<Index>(first + patch.size() / 3);
+    std::vector<Index> corners(patch.begin(), patch.end());  // each once: of a fan, one is every triangle's
+    std::sort(corners.begin(), corners.end());
+    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
     std::vector<Index> outside;
-    for (const Index corner : patch)
+    for (const Index corner : corners)
       for (const Index t : of_corner_.of(corner))
         if (t < first || t >= end) outside.push_back(t);
     std::sort(outside.begin(), outside.end());

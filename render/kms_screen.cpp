@@ -35,10 +35,11 @@ Error failure(const std::filesystem::path& device, const std::string& what) {
   return {ErrorKind::failed, "screen of " + device.string() + ": " + what};
 }
 
-KmsTable read_table(int device) {
-  KmsTable table;
+Result<KmsTable> read_table(int device) {
   const Resources resources(drmModeGetResources(device));
-  if (!resources) return table;
+  if (!resources)
+    return Error{ErrorKind::failed, std::string("it has no mode setting: ") + std::strerror(errno)};
+  KmsTable table;
   table.controllers.assign(resources->crtcs, resources->crtcs + resources->count_crtcs);
   for (int i = 0; i < resources->count_connectors; ++i) {
     const Connector connector(drmModeGetConnector(device, resources->connectors[i]));
@@ -78,7 +79,9 @@ class Screen final : public KmsScreen {
   }
 
   Status start() {
-    const auto output = choose_output(read_table(device_));
+    const auto table = read_table(device_);
+    if (!table) return failure(name_, table.error().message);
+    const auto output = choose_output(*table);
     if (!output) return failure(name_, output.error().message);
     output_ = *output;
     if (drmSetMaster(device_) != 0)
@@ -101,13 +104,10 @@ class Screen final : public KmsScreen {
     if (eglSwapBuffers(display_, window_) != EGL_TRUE) return failure(name_, "cannot show a picture");
     gbm_bo* next = gbm_surface_lock_front_buffer(surface_);
     if (next == nullptr) return failure(name_, "no free buffer");
-    const auto buffer = framebuffer_of(next);
-    if (!buffer) return buffer.error();
-    const int failed =
-        shown_ == nullptr
-            ? drmModeSetCrtc(device_, output_.controller, *buffer, 0, 0, &output_.connector, 1, &output_.mode)
-            : drmModePageFlip(device_, output_.controller, *buffer, DRM_MODE_PAGE_FLIP_EVENT, &flipping_);
-    if (failed != 0) return failure(name_, std::strerror(errno));
+    if (Status s = put_on_screen(next); !s) {
+      gbm_surface_release_buffer(surface_, next);
+      return s;
+    }
     flipping_ = shown_ != nullptr;
     if (shown_ != nullptr) leaving_ = shown_;
     shown_ = next;
@@ -157,6 +157,16 @@ class Screen final : public KmsScreen {
       if (static_cast<std::uint32_t>(format) == kFormat) return config;
     }
     return nullptr;
+  }
+
+  Status put_on_screen(gbm_bo* next) {
+    const auto buffer = framebuffer_of(next);
+    if (!buffer) return buffer.error();
+    const int failed =
+        shown_ == nullptr
+            ? drmModeSetCrtc(device_, output_.controller, *buffer, 0, 0, &output_.connector, 1, &output_.mode)
+            : drmModePageFlip(device_, output_.controller, *buffer, DRM_MODE_PAGE_FLIP_EVENT, &flipping_);
+    return failed == 0 ? Status() : failure(name_, std::strerror(errno));
   }
 
   // The kernel's number of a buffer, made once and kept with it.

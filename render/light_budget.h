@@ -20,6 +20,8 @@ class LightBudget {
     int shadow_size = 256;            // texels a side of a map, where all are there
   };
   explicit LightBudget(const Goals& goals);
+  LightBudget(const LightBudget&) = delete;  // what is chosen may lie within
+  LightBudget& operator=(const LightBudget&) = delete;
 
   // The lights to draw; the set itself where there is no goal, or it is no set to choose from. Valid until the next call.
   const LightSet& choose(const LightSet& all);

@@ -137,7 +137,10 @@ void QualityControl::decide(double most_lights, const Error& error) {
 
 // A part of the way to what is wanted.
 void QualityControl::approach(double most_lights) {
-  wanted_.lights = std::min(wanted_.lights, most_lights);
+  if (wanted_.lights > most_lights) {
+    wanted_.lights = most_lights;
+    last_.logarithm = 0;  // what comes now is no answer to the step
+  }
   bool changed = false;
   for (std::size_t knob = 0; knob < kKnobs; ++knob) {
     double& value = value_of(shown_, knob);

@@ -29,9 +29,11 @@ class QualityControl {
   Quality choose(double most_lights, const Error& error);
   // How long the last frame took, with the quality chosen for it.
   void frame_took(double ms);
+  static constexpr std::size_t kKnobs = 2;  // lights, texels
+  // What a knob's e-fold is believed to cost, ms; 0: no frame is known yet.
+  [[nodiscard]] const std::array<double, kKnobs>& costs_ms() const { return cost_ms_; }
 
  private:
-  static constexpr std::size_t kKnobs = 2;
   struct Step {
     std::size_t knob = 0;
     double logarithm = 0;  // of the knob's value after it over that before

@@ -3,6 +3,7 @@
 #include "render/shadow_atlas.h"
 
 #include <algorithm>
+#include <string>
 #include <tuple>
 
 namespace lightwell::render {
@@ -22,6 +23,10 @@ Result<ShadowAtlas> ShadowAtlas::create(const Casters& coarse, const Casters& fi
   ShadowAtlas atlas;
   atlas.options_ = options;
   atlas.tiles_ = ShadowTiles(options.map_size, options.texels_by_power, side_limit());
+  if (atlas.tiles_.capacity() == 0)
+    return Error{ErrorKind::usage, "shadow size " + std::to_string(options.map_size) +
+                                       " is out of range: 1 to " + std::to_string(side_limit()) +
+                                       " with this driver"};
   auto program = gl::make_program("shadow_vertex", "empty_fragment");
   if (!program) return program.error();
   atlas.program_ = std::move(program).value();

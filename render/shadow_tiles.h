@@ -36,7 +36,7 @@ class ShadowTiles {
   ShadowTiles(int map_size, bool by_power, int page_limit);
   ShadowTiles() = default;
 
-  // Lights that have tiles at once.
+  // Lights that have tiles at once. 0: maps of such a size that are all equal are larger than a page may be.
   [[nodiscard]] std::size_t capacity() const;
   [[nodiscard]] int unit() const { return unit_; }  // texels
   [[nodiscard]] const TilePages& pages() const { return pages_; }

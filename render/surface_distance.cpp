@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "lighting/result.h"
 #include "render/grouped.h"
 
 namespace lightwell::render {
@@ -31,7 +32,10 @@ struct Polygon {
     std::copy_n(other.corners.begin(), count, corners.begin());
     return *this;
   }
-  void add(const Vec3d& p) { corners[static_cast<std::size_t>(count++)] = p; }
+  void add(const Vec3d& p) {
+    verify_bug(count < kMost, "a polygon of more corners than cuts can make");
+    corners[static_cast<std::size_t>(count++)] = p;
+  }
   [[nodiscard]] const Vec3d& operator[](int i) const { return corners[static_cast<std::size_t>(i)]; }
   [[nodiscard]] Vec3d middle() const {
     Vec3d sum = Vec3d::Zero();
@@ -188,7 +192,7 @@ class Neighbourhood {
     Polygon left = polygon;
     for (std::size_t edge = 0; edge < 3; ++edge)
       cut(left, rest[edge], near_m_, [&](const Vec3d& p) { return over.inside(edge, p); });
-    if (!over.is_within(left, reach_m_ + near_m_)) return contains_halves(polygon, middle, depth);
+    if (!over.is_within(left, reach_m_ - near_m_)) return contains_halves(polygon, middle, depth);
     return contains(rest[0], depth + 1) && contains(rest[1], depth + 1) && contains(rest[2], depth + 1);
   }
 

@@ -29,7 +29,8 @@ constexpr float kLeastNoise = 3e-3f;
 constexpr float kNoiseUp = 1.15f;
 constexpr float kNoiseDown = 0.9364f;
 // What is not yet learnt is taken in parts of the last jump, and that is forgotten in 16 frames (e^(−1/16) a frame) once
-// the unknowns were learnt and confirmed: after a step of a hundred and back, a small lamp is a step again.
+// there were two frames for every unknown, confirmed or not, as the swing of a noisy lamp may never be: after a step of a
+// hundred and back, a small lamp is a step again.
 constexpr float kScaleDecay = 0.9394f;
 constexpr float kLeastScale = 1e-20f;  // before floats become slow to multiply
 constexpr float kDark = 0.2f;

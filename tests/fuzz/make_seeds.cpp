@@ -223,11 +223,11 @@ void tracking(const std::filesystem::path& folder) {
             std::string(1, '\0') + "\x61y\x21\x61z\xFA\x3E\x80" + std::string(2, '\0') + "\xFF");
   const std::string chunks = "\x7F\x64" + std::string("lens") + "\x60\xFF";  // of a text of no given length
   write(folder / "opentrackio_chunks.cbor", std::string(1, '\2') + "\xA1" + chunks + "\x5F\x41\x01\xFF");
-  for (const char* byte :
-       {"5F", "7F", "9F", "BF", "81", "A1", "C0"}) {  // what may nest, and bytes and texts must not
+  // What may nest, and bytes and texts must not: more than a reader's stack holds.
+  for (const char* byte : {"5F", "7F", "9F", "BF", "81", "A1", "C0"}) {
     const auto nested = static_cast<char>(std::stoi(byte, nullptr, 16));
     write(folder / (std::string("opentrackio_nested_") + byte),
-          std::string(1, '\2') + std::string(64, nested));
+          std::string(1, '\2') + std::string(60'000, nested));
     write(folder / (std::string("opentrackio_nested_value_") + byte),
           std::string(1, '\2') + "\xA1\x64lens" + std::string(64, nested));
   }

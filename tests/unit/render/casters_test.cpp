@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <random>
 
@@ -363,6 +365,23 @@ TEST(SimplifiedCasters, FreeBordersStay) {
                                           .cross(positions[fewer[t + 2]] - positions[fewer[t]])
                                           .y());
   EXPECT_NEAR(area, kSide * kSide, 1e-3);  // small whole numbers: single precision is exact
+}
+
+// Of many triangles, whose patches a curve through their box finds: a box without extent, and one of the least.
+TEST(SimplifiedCasters, ManyTrianglesInOnePointStayInIt) {
+  for (const float extent : {0.0f, std::numeric_limits<float>::denorm_min(), 1e-38f}) {
+    std::vector<Vec3f> positions = {Vec3f(1, 2, 3) * extent};
+    std::vector<std::uint32_t> fan;
+    for (std::uint32_t i = 1; i <= 20'002; ++i) {
+      const float angle = static_cast<float>(i) * 3e-4f;
+      positions.emplace_back(extent * std::cos(angle), extent * std::sin(angle), 0);
+      if (i > 1) fan.insert(fan.end(), {0, i - 1, i});
+    }
+    const auto fewer = simplify(fan, positions, 0.1f);
+    EXPECT_EQ(fewer.size() % 3, 0u);
+    EXPECT_LE(fewer.size(), fan.size());
+    for (const std::uint32_t i : fewer) ASSERT_LT(i, positions.size());
+  }
 }
 
 TEST(SimplifiedCasters, WhatCannotBeSimplerStays) {

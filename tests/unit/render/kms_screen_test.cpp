@@ -30,6 +30,7 @@ TEST(KmsScreen, AFileThatIsNoDeviceIsOneLineThatNamesIt) {
   const test::TemporaryFolder folder;
   std::ofstream(folder.path() / "card0") << "no device";
   expect_refused(folder.path(), "card0");
+  expect_refused(folder.path(), "no mode setting");
 }
 
 TEST(KmsScreen, OfSeveralDevicesEachIsSaid) {

@@ -96,6 +96,44 @@ TEST(QualityControl, OutOfReachLeavesOneLightOfTheLeastTexels) {
   EXPECT_EQ(q.texels, 1.0 / 16);
 }
 
+// Of a machine whose time goes with the logarithms, so that there is one right cost of each.
+constexpr double kFixed_ms = 20, kLights_ms = 6, kTexels_ms = 3;
+double logarithmic_ms(const Quality& q) {
+  return kFixed_ms + kLights_ms * std::log(q.lights) + kTexels_ms * std::log(q.texels);
+}
+// Differences of times over logarithms of a forty-eighth or more: rounding.
+constexpr double kRounding = 1e-9;
+
+bool is_known(const std::array<double, QualityControl::kKnobs>& costs) {
+  return std::abs(costs[0] - kLights_ms) < kRounding && std::abs(costs[1] - kTexels_ms) < kRounding;
+}
+
+TEST(QualityControl, LearnsWhatLightsAndTexelsCost) {
+  for (const double fps : {14.0, 18.0, 22.0}) {
+    QualityControl control(fps);
+    for (int i = 0; i < 600; ++i) control.frame_took(logarithmic_ms(control.choose(4000, error)));
+    EXPECT_TRUE(is_known(control.costs_ms()))
+        << fps << ": " << control.costs_ms()[0] << ", " << control.costs_ms()[1];
+  }
+}
+
+// In the midst of a step as well: what follows answers no step that was made.
+TEST(QualityControl, FewerLightsToChooseFromTeachNothing) {
+  int drops = 0;
+  for (int frame = 0; frame < 600; ++frame) {
+    QualityControl control(14);
+    Quality q;
+    for (int i = 0; i < frame; ++i) control.frame_took(logarithmic_ms(q = control.choose(4000, error)));
+    if (!is_known(control.costs_ms())) continue;
+    ++drops;
+    for (int i = 0; i < 40; ++i)
+      control.frame_took(logarithmic_ms(control.choose(std::floor(q.lights * 0.6), error)));
+    ASSERT_TRUE(is_known(control.costs_ms()))
+        << "frame " << frame << ": " << control.costs_ms()[0] << ", " << control.costs_ms()[1];
+  }
+  EXPECT_GT(drops, 300);
+}
+
 TEST(QualityControl, NeverTakesMoreLightsThanThereAre) {
   QualityControl control(25);
   run(control, {1, 0.01, 0.01}, 300, 2000);

@@ -137,6 +137,18 @@ TEST(ShadowTiles, PagesThatServedOnceStay) {
   }
 }
 
+TEST(ShadowTiles, EqualMapsLargerThanAPageHaveNoTilesAndThoseByPowerShareIt) {
+  constexpr int kSmallPage = 2048;  // what OpenGL ES 3.1 guarantees
+  EXPECT_EQ(ShadowTiles(kSmallPage + 1, false, kSmallPage).capacity(), 0u);
+  EXPECT_EQ(ShadowTiles(kSmallPage, false, kSmallPage).capacity(), static_cast<std::size_t>(kMostPages));
+  ShadowTiles tiles(2 * kSmallPage, true, kSmallPage);
+  ASSERT_GT(tiles.capacity(), 0u);
+  auto lights = rows(8, static_cast<int>(tiles.capacity()));
+  tiles.assign(lights);
+  expect_in_place(tiles);
+  EXPECT_LE(tiles.pages().side() * tiles.unit(), kSmallPage);
+}
+
 TEST(ShadowTiles, NoLightsHaveNoPlace) {
   ShadowTiles tiles(256, true, kPageLimit);
   auto lights = rows(7, 50);
