@@ -31,9 +31,9 @@ class LightBudget {
   // Relative RMSE that is expected of a picture with them: of too few lights as predicted, else as measured of such
   // numbers, and of the maps' texels.
   [[nodiscard]] double expected_error() const { return expected_error_; }
-  // How long the last frame took, with the lights chosen for it.
-  void frame_took(double ms) {
-    if (control_) control_->frame_took(ms);
+  // How long the last frame took, with the lights chosen for it, and what share of the shadow maps it drew.
+  void frame_took(double ms, double maps_drawn) {
+    if (control_) control_->frame_took(ms, maps_drawn);
   }
   // True where an error is asked for of lights that carry no prediction: all are taken.
   [[nodiscard]] bool lacks_prediction() const { return lacks_prediction_; }

@@ -24,6 +24,8 @@ constexpr std::size_t kFramesToJudge = 3;
 // Before it is known: what share of a frame's time goes with the logarithm of lights, and of texels.
 constexpr std::array<double, 2> kFirstCost = {0.8, 0.2};
 constexpr double kNoError = 1e-9;
+// Of the maps: fewer of them drawn count as so many, and below kStanding giving up texels is no way to save time.
+constexpr double kLeastDrawn = 0.01, kStanding = 0.3;
 // How much better an exchange must be than leaving it.
 constexpr double kClearly = 2;
 // The least and the most that a measured cost may be, of the frame: no hiccup makes a knob free or forbidden.
@@ -35,7 +37,8 @@ double& value_of(Quality& quality, std::size_t knob) {
 
 }  // namespace
 
-void QualityControl::frame_took(double ms) {
+void QualityControl::frame_took(double ms, double maps_drawn) {
+  maps_drawn_ += (std::clamp(maps_drawn, kLeastDrawn, 1.0) - maps_drawn_) / 2;
   ms_[frames_ % ms_.size()] = ms;
   ++frames_;
 }
@@ -71,6 +74,10 @@ void QualityControl::learn(double ms) {
   for (std::size_t knob = 0; knob < kKnobs; ++knob)
     if (!(cost_ms_[knob] > 0)) cost_ms_[knob] = kFirstCost[knob] * ms;
   if (last_.logarithm == 0) return;
+  if (last_.knob == 1 && maps_drawn_ < kStanding) {
+    last_.logarithm = 0;
+    return;
+  }
   const double measured = std::clamp((ms - ms_before_) / last_.logarithm, kLeastCost * ms, kMostCost * ms);
   double& cost = cost_ms_[last_.knob];
   cost += (measured - cost) / (std::exchange(measured_[last_.knob], true) ? 4 : 1);  // times are noisy
@@ -90,6 +97,7 @@ std::optional<QualityControl::Step> QualityControl::best(const Steps& steps, boo
   for (const Step& step : steps) {
     if (step.logarithm == 0) continue;
     if (up && ms + time_of(step) > kRoom * frame_ms_) continue;
+    if (!up && step.knob == 1 && maps_drawn_ < kStanding) continue;
     const double worth = up ? step.error / time_of(step) : time_of(step) / std::max(step.error, kNoError);
     if (worth > most) best = step, most = worth;
   }
@@ -102,6 +110,7 @@ std::optional<QualityControl::Step> QualityControl::exchange(const Steps& down, 
     const Step& give = down[less];
     const Step& get = up[1 - less];
     if (give.logarithm == 0 || get.logarithm == 0 || given_ == 1 - less) continue;
+    if (less == 1 && maps_drawn_ < kStanding) continue;
     if (get.error * time_of(give) > kClearly * give.error * time_of(get)) return give;
   }
   return std::nullopt;

@@ -27,8 +27,9 @@ class QualityControl {
 
   // Of the next frame. most_lights: ≥ 1, how many there are to choose from.
   Quality choose(double most_lights, const Error& error);
-  // How long the last frame took, with the quality chosen for it.
-  void frame_took(double ms);
+  // How long the last frame took, with the quality chosen for it; maps_drawn: share of the shadow maps that it drew. While
+  // maps stand their texels cost nothing.
+  void frame_took(double ms, double maps_drawn = 1);
   static constexpr std::size_t kKnobs = 2;  // lights, texels
   // What a knob's e-fold is believed to cost, ms; 0: no frame is known yet.
   [[nodiscard]] const std::array<double, kKnobs>& costs_ms() const { return cost_ms_; }
@@ -46,7 +47,7 @@ class QualityControl {
                           const Error& error) const;
   using Steps = std::array<Step, kKnobs>;
   [[nodiscard]] double time_of(const Step& step) const {
-    return cost_ms_[step.knob] * std::abs(step.logarithm);
+    return cost_ms_[step.knob] * std::abs(step.logarithm) * (step.knob == 1 ? maps_drawn_ : 1);
   }
   [[nodiscard]] std::optional<Step> best(const Steps& steps, bool up, double ms) const;
   [[nodiscard]] std::optional<Step> exchange(const Steps& down, const Steps& up) const;
@@ -60,6 +61,7 @@ class QualityControl {
   std::array<double, kKnobs> cost_ms_{};  // of a knob's logarithm; 0: not known yet
   Step last_;                             // of no length: nothing to learn
   double ms_before_ = 0;
+  double maps_drawn_ = 1;  // share, eased
   std::optional<std::size_t>
       given_;  // the knob that was turned down for the other's sake, while the time fits
   std::array<bool, kKnobs> measured_{};

@@ -258,7 +258,8 @@ class Session {
     renderer_->finish();
     if (Status s = renderer_->check(); !s) return s;
     times.ms = last_ms_ = seconds_since(start) * 1e3;
-    budget_.frame_took(last_ms_);
+    const auto maps = static_cast<double>(std::max<std::size_t>(renderer_->shadow_maps(), 1));
+    budget_.frame_took(last_ms_, static_cast<double>(renderer_->shadow_maps_drawn()) / maps);
     times.cpu_ms = cpu_ms() - cpu_start;
     times.passes = renderer_->pass_times();
     if (!options_.stats.empty()) statistics_.frames.push_back(times);

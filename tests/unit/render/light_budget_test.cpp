@@ -30,7 +30,7 @@ TEST(LightBudget, WithoutAGoalTheSetIsTakenAsItIs) {
   LightBudget budget({});
   const LightSet all = chain(72);
   EXPECT_EQ(&budget.choose(all), &all);
-  budget.frame_took(1e6);
+  budget.frame_took(1e6, 1);
   EXPECT_EQ(&budget.choose(all), &all);
 }
 
@@ -43,14 +43,14 @@ TEST(LightBudget, HoldsTheFrameRateWithAsManyLightsAsItAffordsAndNeverJumps) {
     const std::size_t n = budget.choose(all).lights.size();
     EXPECT_LE(n > before ? n - before : before - n, std::max<std::size_t>(1, before / 16));
     before = n;
-    budget.frame_took(frame % 10 == 0 ? 500 : 5 + 0.5 * static_cast<double>(n));  // a hiccup now and then
+    budget.frame_took(frame % 10 == 0 ? 500 : 5 + 0.5 * static_cast<double>(n), 1);  // a hiccup now and then
   }
   const double ms = 5 + 0.5 * static_cast<double>(before);
   EXPECT_LE(ms, 1000 / 30.0);
   EXPECT_GE(ms, 0.7 * 1000 / 30.0);
   for (int frame = 0; frame < 1500; ++frame) {  // another machine: ten times as fast
     before = budget.choose(all).lights.size();
-    budget.frame_took(0.5 + 0.05 * static_cast<double>(before));
+    budget.frame_took(0.5 + 0.05 * static_cast<double>(before), 1);
   }
   EXPECT_EQ(before, 200u);
 }
@@ -60,11 +60,11 @@ TEST(LightBudget, OneSlowFrameTakesNoLight) {
   const LightSet all = chain(40);
   for (int frame = 0; frame < 500; ++frame) {
     static_cast<void>(budget.choose(all));
-    budget.frame_took(1);
+    budget.frame_took(1, 1);
   }
   for (int frame = 0; frame < 40; ++frame) {
     EXPECT_EQ(budget.choose(all).lights.size(), 40u) << frame;
-    budget.frame_took(frame % 7 == 0 ? 900 : 28);  // of 33 ms, the first one too
+    budget.frame_took(frame % 7 == 0 ? 900 : 28, 1);  // of 33 ms, the first one too
   }
 }
 
@@ -76,7 +76,7 @@ TEST(LightBudget, AnErrorIsExpectedOfWhatIsChosen) {
   EXPECT_GE(at_first, 0.4 / 16);  // of the lights alone
   for (int frame = 0; frame < 1000; ++frame) {
     static_cast<void>(budget.choose(all));
-    budget.frame_took(1);
+    budget.frame_took(1, 1);
   }
   EXPECT_EQ(budget.texels(), 1);
   EXPECT_NEAR(budget.expected_error(), std::hypot(0.4 / 100, 0.006), 1e-6);
@@ -99,7 +99,7 @@ TEST(LightBudget, AFrameRateOutOfReachLeavesOneLight) {
   const LightSet all = chain(20);
   for (int frame = 0; frame < 1000; ++frame) {
     EXPECT_GE(budget.choose(all).lights.size(), 1u);
-    budget.frame_took(50);
+    budget.frame_took(50, 1);
   }
   EXPECT_EQ(budget.choose(all).lights.size(), 1u);
   EXPECT_LT((budget.chosen().lights[0].illuminance - all.total_illuminance).abs().maxCoeff(), 1e-3f);

@@ -77,6 +77,23 @@ TEST(QualityControl, GivesUpWhatCostsTimeAndNotWhatIsFree) {
   EXPECT_GT(of_dear.lights, of_free.lights);
 }
 
+// Maps that stand take no time, however many texels they have: noise must not teach that they do.
+TEST(QualityControl, LeavesTheTexelsOfMapsThatStand) {
+  for (const double fps : {25.0, 40.0, 1000.0}) {
+    QualityControl control(fps);
+    const Machine machine{10, 2, 0};
+    Quality q;
+    for (int i = 0; i < 300; ++i) {
+      q = control.choose(64, error);
+      control.frame_took(machine.ms(q) * (1 + 0.05 * std::sin(7.0 * i)), i == 0 ? 1 : 0);
+      if (i > 20) {
+        EXPECT_EQ(q.texels, 1) << fps;
+      }
+    }
+    EXPECT_TRUE(machine.ms(q) <= 1000 / fps || q.lights == 1) << fps << " " << q.lights;
+  }
+}
+
 TEST(QualityControl, StaysWhereItIsOnceTheTimeFits) {
   QualityControl control(25);
   const Machine machine{5, 0.5, 0.3};
