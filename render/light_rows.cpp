@@ -19,6 +19,10 @@ void set_row(float (&row)[4], const Vec3f& axis, float scale, float middle, cons
 
 }  // namespace
 
+double luminance_of(const LightRow& light) {
+  return luminance(Rgbd(Eigen::Map<const Rgb>(light.illuminance).cast<double>()));
+}
+
 std::vector<LightRow> make_light_rows(std::span<const DirectionalLight> lights, const Casters& casters) {
   std::vector<LightRow> rows;
   rows.reserve(lights.size());

@@ -24,6 +24,9 @@ struct LightRow {
   float fit[4];
 };
 
+// Of its illuminance.
+double luminance_of(const LightRow& light);
+
 // The diameter of a map's sphere with the depth range's padding, so that no caster reaches the cleared depth
 // of 1.
 inline constexpr float kDepthPadding = 1.01f;

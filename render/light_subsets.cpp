@@ -24,11 +24,6 @@ constexpr double kStrongShare = 1.0 / 16;
 constexpr std::size_t kLeastLightsOfSubset = 2;
 constexpr std::size_t kFewest = 16;
 
-double luminance_of(const LightRow& row) {
-  return 0.2126 * static_cast<double>(row.illuminance[0]) + 0.7152 * static_cast<double>(row.illuminance[1]) +
-         0.0722 * static_cast<double>(row.illuminance[2]);
-}
-
 // Of each row and what is beside it among all lights, itself too.
 std::vector<double> strengths_of(std::span<const LightRow> rows, std::span<const LightRow> all) {
   const auto least_cosine = static_cast<float>(std::cos(kBesideDeg * kPi / 180));

@@ -20,11 +20,6 @@ constexpr int kSmallestMap = 4;
 // A soft edge at a quarter of what casts, in texels of a map of 256, is so many times the light's radius.
 constexpr double kEdgeTexels = 128;
 
-double luminance_of(const LightRow& row) {
-  return 0.2126 * static_cast<double>(row.illuminance[0]) + 0.7152 * static_cast<double>(row.illuminance[1]) +
-         0.0722 * static_cast<double>(row.illuminance[2]);
-}
-
 // What is seen of a light's shadow: on the ground, and a little on what stands upright.
 double weight_of(const LightRow& row) {
   const double soft = 1 + kEdgeTexels * static_cast<double>(row.spread);
