@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #include "firmware/core/board_clock.h"
-#include "firmware/core/frame.h"
+#include "interface/sync_frame.h"
 
 #ifdef __cplusplus
 extern "C" {

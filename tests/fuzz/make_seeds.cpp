@@ -8,6 +8,7 @@
 #include "interface/atomic_file.h"
 #include "interface/calibration_io.h"
 #include "interface/recording.h"
+#include "interface/sync_frame.h"
 #include "tests/support/gltf_document.h"
 
 using namespace lightwell;
@@ -233,6 +234,18 @@ void tracking(const std::filesystem::path& folder) {
   }
 }
 
+void sync_protocol(const std::filesystem::path& folder) {
+  for (unsigned type = 0; type < 256; ++type) {
+    const auto known = static_cast<std::uint8_t>(type);
+    const std::size_t size = sync_payload_size(known);
+    if (size == SIZE_MAX) continue;
+    const std::vector<std::uint8_t> payload(size, 1);
+    std::string wire(SYNC_MAX_WIRE, '\0');
+    wire.resize(frame_encode(known, 1, payload.data(), size, reinterpret_cast<std::uint8_t*>(wire.data())));
+    write(folder / std::to_string(type), wire);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -250,5 +263,7 @@ int main(int argc, char** argv) {
   scenes(folder / "gltf");
   takes(folder / "recording");
   tracking(folder / "tracking");
+  std::filesystem::create_directories(folder / "sync_protocol");
+  sync_protocol(folder / "sync_protocol");
   return 0;
 }

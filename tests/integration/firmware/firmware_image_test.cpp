@@ -19,7 +19,7 @@
 #include <thread>
 #include <vector>
 
-#include "firmware/core/frame.h"
+#include "interface/sync_frame.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {

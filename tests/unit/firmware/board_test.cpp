@@ -48,6 +48,13 @@ std::uint64_t u64(const Bytes& bytes, std::size_t at) {
   return value;
 }
 
+Bytes fault(std::uint8_t code, std::uint8_t type) {
+  Bytes payload(sync_payload_size(SYNC_FAULT));
+  payload[0] = code;
+  payload[1] = type;
+  return payload;
+}
+
 // Sends a request to a board; its answer, if any.
 std::optional<Received> ask(board& self, const Bytes& wire, std::uint32_t counter_us = 0) {
   Bytes answer(SYNC_MAX_WIRE);
@@ -145,15 +152,15 @@ TEST(Board, PingComesBackWithBoardTimeAcrossTheWrap) {
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->type, SYNC_PONG);
   EXPECT_EQ(u64(answer->payload, 0), 0x0807060504030201ull);
-  EXPECT_EQ(u64(answer->payload, 8), 0x100000004ull);
+  EXPECT_EQ(u64(answer->payload, 8), 0x100000004ull * 1000);
   EXPECT_LE(u64(answer->payload, 8), u64(answer->payload, 16));
 }
 
 TEST(Board, WhatItDoesNotKnowIsAFaultThatNamesIt) {
   board self;
   board_init(&self, 0);
-  EXPECT_EQ(ask(self, encode(0x55, 0, {}))->payload, (Bytes{SYNC_FAULT_UNKNOWN_TYPE, 0x55}));
-  EXPECT_EQ(ask(self, encode(SYNC_PING, 0, {1}))->payload, (Bytes{SYNC_FAULT_PAYLOAD_SIZE, SYNC_PING}));
+  EXPECT_EQ(ask(self, encode(0x55, 0, {}))->payload, fault(SYNC_FAULT_UNKNOWN_TYPE, 0x55));
+  EXPECT_EQ(ask(self, encode(SYNC_PING, 0, {1}))->payload, fault(SYNC_FAULT_PAYLOAD_SIZE, SYNC_PING));
 }
 
 }  // namespace

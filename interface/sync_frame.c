@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/core/frame.h"
+#include "interface/sync_frame.h"
 
 uint16_t frame_crc16(const uint8_t* bytes, size_t size) {
   uint16_t crc = 0xFFFFu;
@@ -62,6 +62,17 @@ size_t frame_encode(uint8_t type, uint16_t sequence, const uint8_t* payload, siz
   const size_t size = cobs_encode(frame, body + SYNC_CRC_SIZE, wire);
   wire[size] = 0;
   return size + 1u;
+}
+
+size_t frame_encode_message(const sync_message* message, uint16_t sequence, uint8_t* wire) {
+  uint8_t payload[SYNC_MAX_PAYLOAD];
+  const size_t size = sync_pack(message, payload);
+  return size == SIZE_MAX ? 0u : frame_encode(message->type, sequence, payload, size, wire);
+}
+
+bool frame_message(const frame_view* frame, sync_message* message) {
+  return frame->version == SYNC_PROTOCOL_VERSION &&
+         sync_unpack(frame->type, frame->payload, frame->payload_size, message);
 }
 
 void frame_receiver_init(frame_receiver* receiver) {

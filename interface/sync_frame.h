@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Bytes to frames and back: COBS, CRC-16, resynchronisation after garbage. No heap, no registers.
+// Bytes to frames and back: COBS, CRC-16, resynchronisation after garbage; C11, shared with the firmware. No heap,
+// no registers. A frame is lost to garbage only where the garbage reaches into it: the next one arrives.
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -30,6 +31,12 @@ typedef struct {
   const uint8_t* payload;
   size_t payload_size;
 } frame_view;
+
+// Whole frame of a message; returns its size, 0 if its type does not exist. wire: SYNC_MAX_WIRE bytes.
+size_t frame_encode_message(const sync_message* message, uint16_t sequence, uint8_t* wire);
+
+// The message in a frame. False: another protocol version, an unknown type or a wrong size.
+bool frame_message(const frame_view* frame, sync_message* message);
 
 typedef struct {
   uint8_t bytes[SYNC_MAX_WIRE];
