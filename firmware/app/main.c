@@ -12,7 +12,7 @@ int main(void) {
   for (;;) {
     uint8_t byte;
     if (!hal_link_read(&byte)) {
-      (void)board_clock_us(&self.clock, hal_counter_us());  // an idle link must not miss a wrap
+      (void)board_time_update(&self.clock, hal_counter_us());  // an idle link must not miss a wrap
       continue;
     }
     const size_t size = board_receive(&self, byte, hal_counter_us(), wire);

@@ -4,7 +4,7 @@
 
 void board_init(board* self, uint32_t counter_us) {
   frame_receiver_init(&self->receiver);
-  board_clock_init(&self->clock, counter_us);
+  board_time_init(&self->clock, counter_us);
   self->sequence = 0;
 }
 
@@ -30,14 +30,14 @@ static size_t pong(board* self, const sync_ping* ping, uint64_t received_us, uin
       .type = SYNC_PONG,
       .pong = {.t_host_ns = ping->t_host_ns,
                .t_received_board_ns = received_us * 1000u,
-               .t_sent_board_ns = board_clock_us(&self->clock, counter_us) * 1000u}};
+               .t_sent_board_ns = board_time_update(&self->clock, counter_us) * 1000u}};
   return send(self, &message, wire);
 }
 
 size_t board_receive(board* self, uint8_t byte, uint32_t counter_us, uint8_t* wire) {
   frame_view frame;
   sync_message message;
-  const uint64_t now_us = board_clock_us(&self->clock, counter_us);
+  const uint64_t now_us = board_time_update(&self->clock, counter_us);
   if (!frame_receive(&self->receiver, byte, &frame)) return 0;
   if (frame.version != SYNC_PROTOCOL_VERSION) return fault(self, SYNC_FAULT_VERSION, frame.type, wire);
   if (frame.type != SYNC_HELLO_REQUEST && frame.type != SYNC_PING)

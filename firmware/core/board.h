@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "firmware/core/board_clock.h"
+#include "firmware/core/board_time.h"
 #include "interface/sync_frame.h"
 
 #ifdef __cplusplus
@@ -16,7 +16,7 @@ extern "C" {
 
 typedef struct {
   frame_receiver receiver;
-  board_clock clock;
+  board_time clock;
   uint16_t sequence;
 } board;
 

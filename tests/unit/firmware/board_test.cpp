@@ -126,16 +126,6 @@ TEST(SyncFrame, ResynchronisesWithinOneFrameAfterGarbage) {
   }
 }
 
-TEST(BoardClock, GoesOnAcrossWraps) {
-  board_clock clock;
-  board_clock_init(&clock, 0xFFFFFFF0u);
-  EXPECT_EQ(board_clock_us(&clock, 0xFFFFFFFFu), 0xFFFFFFFFull);
-  EXPECT_EQ(board_clock_us(&clock, 0), 0x100000000ull);
-  EXPECT_EQ(board_clock_us(&clock, 0), 0x100000000ull);
-  EXPECT_EQ(board_clock_us(&clock, 0xFFFFFFFFu), 0x1FFFFFFFFull);
-  EXPECT_EQ(board_clock_us(&clock, 5), 0x200000005ull);
-}
-
 TEST(Board, HelloCarriesTheSchema) {
   board self;
   board_init(&self, 0);
