@@ -15,6 +15,7 @@ constexpr double kStaleMs = 1000;
 std::string alarm_for(const DaemonStatus& status) {
   switch (status.source_state) {
     case SourceState::no_device:
+    case SourceState::no_signal:
     case SourceState::stalled:
     case SourceState::wrong_format:
       return fmt::format("Camera: {} ({})", name(status.source_state), status.source_description);

@@ -36,6 +36,7 @@ CaptureOptions capture_options(const Configuration& configuration) {
   options.pixel_format = source.pixel_format;
   options.rate_hz = source.rate_hz;
   options.exposure_us = source.exposure_us;
+  options.controls = source.controls;
   options.buffers = source.buffers;
   options.packet_size = source.packet_size;
   options.socket_buffer_bytes = source.socket_buffer_bytes;

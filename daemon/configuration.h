@@ -27,6 +27,7 @@ struct Configuration {
     std::string pixel_format;
     double rate_hz = 0;
     double exposure_us = 0;
+    std::string controls;
     int buffers = 8;
     int packet_size = 9000;
     int socket_buffer_bytes = 8 << 20;

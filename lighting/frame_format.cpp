@@ -15,13 +15,14 @@ struct Row {
   bool bayer;
 };
 
-constexpr std::array<Row, 8> kFormats = {{
+constexpr std::array<Row, 9> kFormats = {{
     {PixelFormat::mono8, "Mono8", 8, 8, false},
     {PixelFormat::mono10, "Mono10", 10, 16, false},
     {PixelFormat::mono12, "Mono12", 12, 16, false},
     {PixelFormat::mono12p, "Mono12p", 12, 12, false},
     {PixelFormat::mono16, "Mono16", 16, 16, false},
     {PixelFormat::bayer_rg8, "BayerRG8", 8, 8, true},
+    {PixelFormat::bayer_rg10, "BayerRG10", 10, 16, true},
     {PixelFormat::bayer_rg12, "BayerRG12", 12, 16, true},
     {PixelFormat::bayer_rg16, "BayerRG16", 16, 16, true},
 }};

@@ -10,7 +10,17 @@ namespace lightwell {
 
 // GenICam (PFNC 2.1) names. 10 and 12 bit unpacked formats are little-endian 16 bit words, value in the low bits;
 // the p formats are packed least significant bit first.
-enum class PixelFormat { mono8, mono10, mono12, mono12p, mono16, bayer_rg8, bayer_rg12, bayer_rg16 };
+enum class PixelFormat {
+  mono8,
+  mono10,
+  mono12,
+  mono12p,
+  mono16,
+  bayer_rg8,
+  bayer_rg10,
+  bayer_rg12,
+  bayer_rg16
+};
 
 std::string_view name(PixelFormat format);  // "Mono12p"
 std::optional<PixelFormat> pixel_format_from_name(std::string_view name);

@@ -10,6 +10,8 @@ const char* name(SourceState state) {
       return "no device";
     case SourceState::opening:
       return "opening";
+    case SourceState::no_signal:
+      return "no signal";
     case SourceState::streaming:
       return "streaming";
     case SourceState::stalled:

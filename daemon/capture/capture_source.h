@@ -71,6 +71,7 @@ class FrameLease {
 enum class SourceState {
   no_device,     // nothing answers at the address; tried again by itself
   opening,       // talking to the device
+  no_signal,     // the device is there, what should be connected to it sends nothing it can lock on
   streaming,     // frames arrive
   stalled,       // the device answers, frames do not arrive
   wrong_format,  // frames of another size or format arrive than were agreed; re-opens by itself
@@ -118,6 +119,8 @@ struct CaptureOptions {
   std::string pixel_format;  // empty: as the camera has it
   double rate_hz = 0;        // 0: as the camera has it
   double exposure_us = 0;    // 0: as the camera has it
+  std::string
+      controls;  // V4L2: "name=value, …" as v4l2-ctl spells them, set in this order before the exposure
   int buffers = 8;
   int packet_size = 9000;  // GigE Vision, bytes; 1400 beyond loopback without jumbo frames
   int socket_buffer_bytes = 8 << 20;
@@ -125,7 +128,7 @@ struct CaptureOptions {
   bool loop = false;  // recording
 };
 
-// source: aravis:ADDRESS | recording:FILE | simulated:NAME (contract). Fails with usage for an unknown kind, naming what
+// source: aravis:ADDRESS | v4l2:/dev/videoN | recording:FILE | simulated:NAME (contract). Fails with usage for an unknown kind, naming what
 // is allowed.
 Result<std::unique_ptr<CaptureSource>> make_capture_source(const std::string& source,
                                                            const CaptureOptions& options);

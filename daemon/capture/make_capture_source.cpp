@@ -11,6 +11,7 @@
 #include "daemon/capture/capture_source.h"
 #include "daemon/capture/recording_source.h"
 #include "daemon/capture/simulated_source.h"
+#include "daemon/capture/v4l2_source.h"
 
 namespace lightwell {
 namespace {
@@ -21,6 +22,10 @@ Made make_aravis(const std::string& address, const CaptureOptions& options) {
   return std::unique_ptr<CaptureSource>(std::make_unique<AravisSource>(address, options));
 }
 
+Made make_v4l2(const std::string& path, const CaptureOptions& options) {
+  return std::unique_ptr<CaptureSource>(std::make_unique<V4l2Source>(path, options));
+}
+
 struct Kind {
   std::string_view name;
   std::string_view what;
@@ -29,6 +34,7 @@ struct Kind {
 
 constexpr std::array kKinds = {
     Kind{"aravis", "ADDRESS", make_aravis},
+    Kind{"v4l2", "/dev/videoN", make_v4l2},
     Kind{"recording", "FILE", make_recording_source},
     Kind{"simulated", "NAME", make_simulated_source},
 };
@@ -70,9 +76,9 @@ Status check(const CaptureOptions& o) {
   for (const Status& status : checks)
     if (!status) return status;
   if (!o.pixel_format.empty() && !pixel_format_from_name(o.pixel_format))
-    return Error{ErrorKind::usage,
-                 "capture pixel_format " + o.pixel_format +
-                     " is not one of Mono8, Mono10, Mono12, Mono12p, Mono16, BayerRG8, BayerRG12, BayerRG16"};
+    return Error{ErrorKind::usage, "capture pixel_format " + o.pixel_format +
+                                       " is not one of Mono8, Mono10, Mono12, Mono12p, Mono16, BayerRG8, "
+                                       "BayerRG10, BayerRG12, BayerRG16"};
   return {};
 }
 

@@ -56,9 +56,9 @@ void declare(CLI::App& app, CommandLine& c) {
   environment->excludes(scenario);
   app.add_option("--hold", c.probe.hold_s, "Seconds that each environment is shown")->capture_default_str();
   app.add_option("--size", c.size, "Sensor size, WIDTHxHEIGHT")->capture_default_str();
-  app.add_option(
-         "--pixel-format", c.probe.pixel_format,
-         "Mono8, Mono10, Mono12, Mono12p, Mono16, BayerRG8, BayerRG12 or BayerRG16; also the sensor's kind")
+  app.add_option("--pixel-format", c.probe.pixel_format,
+                 "Mono8, Mono10, Mono12, Mono12p, Mono16, BayerRG8, BayerRG10, BayerRG12 or BayerRG16; also "
+                 "the sensor's kind")
       ->capture_default_str();
   app.add_option("--rate", c.probe.rate_hz, "Frames a second at the start; a client may change it")
       ->capture_default_str();

@@ -37,13 +37,14 @@ enum OurRegister : std::uint32_t {
 // Bootstrap registers (GigE Vision 2.0, section 28).
 constexpr std::uint32_t kManufacturer = 0x48, kModel = 0x68, kVersion = 0x88, kManufacturerInfo = 0xa8;
 
-constexpr std::array<std::pair<PixelFormat, std::uint32_t>, 8> kFormatCodes = {{
+constexpr std::array<std::pair<PixelFormat, std::uint32_t>, 9> kFormatCodes = {{
     {PixelFormat::mono8, 0x01080001},
     {PixelFormat::mono10, 0x01100003},
     {PixelFormat::mono12, 0x01100005},
     {PixelFormat::mono12p, 0x010C0047},
     {PixelFormat::mono16, 0x01100007},
     {PixelFormat::bayer_rg8, 0x01080009},
+    {PixelFormat::bayer_rg10, 0x0110000D},
     {PixelFormat::bayer_rg12, 0x01100011},
     {PixelFormat::bayer_rg16, 0x0110002F},
 }};

@@ -24,9 +24,10 @@ Result<FrameFormat> frame_format(const ProbeOptions& options) {
     return out_of_range("height", options.height, "1 to 4096 pixels");
   const auto format = pixel_format_from_name(options.pixel_format);
   if (!format)
-    return Error{ErrorKind::usage,
-                 "pixel format = " + options.pixel_format +
-                     ": allowed Mono8, Mono10, Mono12, Mono12p, Mono16, BayerRG8, BayerRG12, BayerRG16"};
+    return Error{
+        ErrorKind::usage,
+        "pixel format = " + options.pixel_format +
+            ": allowed Mono8, Mono10, Mono12, Mono12p, Mono16, BayerRG8, BayerRG10, BayerRG12, BayerRG16"};
   // Half a byte at the end would be left out of the protocol's payload.
   if (*format == PixelFormat::mono12p && options.width % 2 != 0 && options.height % 2 != 0)
     return out_of_range("width of a Mono12p frame of odd height", options.width, "an even number of pixels");

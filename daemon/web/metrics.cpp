@@ -67,8 +67,9 @@ void add_capture(Page& page, const DaemonStatus& status) {
   page.counter("lightwell_frames_incomplete_total", capture.incomplete, "Frames with packets missing.");
   page.counter("lightwell_source_reconnects_total", capture.reconnects, "Times the camera was opened again.");
   page.family("lightwell_source_state", "gauge", "1 for the state the source is in.");
-  for (const SourceState state : {SourceState::no_device, SourceState::opening, SourceState::streaming,
-                                  SourceState::stalled, SourceState::wrong_format, SourceState::ended})
+  for (const SourceState state :
+       {SourceState::no_device, SourceState::opening, SourceState::no_signal, SourceState::streaming,
+        SourceState::stalled, SourceState::wrong_format, SourceState::ended})
     page.sample(state == status.source_state ? 1 : 0, std::string("state=\"") + name(state) + "\"");
 }
 

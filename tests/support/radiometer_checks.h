@@ -61,8 +61,9 @@ struct FormatCase {
   int bits;
 };
 inline const std::vector<FormatCase> kFormats = {
-    {PixelFormat::mono8, 8},     {PixelFormat::mono10, 10},     {PixelFormat::mono12, 12},
-    {PixelFormat::mono12p, 12},  {PixelFormat::mono16, 16},     {PixelFormat::mono16, 14},
-    {PixelFormat::bayer_rg8, 8}, {PixelFormat::bayer_rg12, 12}, {PixelFormat::bayer_rg16, 16}};
+    {PixelFormat::mono8, 8},      {PixelFormat::mono10, 10},     {PixelFormat::mono12, 12},
+    {PixelFormat::mono12p, 12},   {PixelFormat::mono16, 16},     {PixelFormat::mono16, 14},
+    {PixelFormat::bayer_rg8, 8},  {PixelFormat::bayer_rg10, 10}, {PixelFormat::bayer_rg12, 12},
+    {PixelFormat::bayer_rg16, 16}};
 
 }  // namespace lightwell::test

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "daemon/capture/v4l2_source.h"
 #include "tests/integration/capture/fake_camera.h"
 #include "tests/support/capture_contract.h"
+#include "tests/support/fake_v4l2.h"
 #include "tests/support/private_network.h"
 #include "tests/support/takes.h"
 #include "tests/support/temporary_folder.h"
@@ -72,6 +74,28 @@ struct RecordingSubject {
   }
 };
 INSTANTIATE_TYPED_TEST_SUITE_P(Recording, CaptureContract, RecordingSubject);
+
+// A V4L2 driver in this process; on real drivers the same suite runs in a virtual machine (tests/hardware). Direct: its
+// buffers are handed on; copying: they are unpacked.
+template <bool direct>
+struct V4l2Subject {
+  FakeV4l2 device{[] {
+    FakeV4l2Model model;
+    model.exports = direct;
+    return model;
+  }()};
+  std::string missing() { return {}; }
+  std::unique_ptr<CaptureSource> make() {
+    device.run();
+    return std::make_unique<V4l2Source>(FakeV4l2::kPath, CaptureOptions{}, device);
+  }
+  std::unique_ptr<CaptureSource> make_silent() {
+    device.hush();
+    return std::make_unique<V4l2Source>(FakeV4l2::kPath, CaptureOptions{}, device);
+  }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(V4l2Direct, CaptureContract, V4l2Subject<true>);
+INSTANTIATE_TYPED_TEST_SUITE_P(V4l2Copying, CaptureContract, V4l2Subject<false>);
 
 }  // namespace
 }  // namespace lightwell::test

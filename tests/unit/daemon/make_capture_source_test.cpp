@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 
 TEST(MakeCaptureSource, UnknownKindIsUsageAndNamesTheKnown) {
-  for (const char* source : {"v4l2:/dev/video0", "camera", "", ":", "ARAVIS:127.0.0.1"}) {
+  for (const char* source : {"V4L2:/dev/video0", "camera", "", ":", "ARAVIS:127.0.0.1"}) {
     const auto made = make_capture_source(source, {});
     ASSERT_FALSE(made) << source;
     EXPECT_EQ(made.error().kind, ErrorKind::usage);
