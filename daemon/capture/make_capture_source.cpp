@@ -23,7 +23,7 @@ Made make_aravis(const std::string& address, const CaptureOptions& options) {
 }
 
 Made make_v4l2(const std::string& path, const CaptureOptions& options) {
-  return std::unique_ptr<CaptureSource>(std::make_unique<V4l2Source>(path, options));
+  return make_v4l2_source(path, options);
 }
 
 struct Kind {

@@ -24,7 +24,10 @@ constexpr std::uint64_t kFirstFrameId = std::uint64_t{1} << 32;
 // One in the slot, two leased, one being filled: fewer and the driver would wait for us.
 constexpr std::uint32_t kFewestDirectBuffers = 4;
 
+constexpr const char* kAbsent = "is not there; check cable and power";
+
 CaptureFault refused(const std::string& what, int error) {
+  if (error == -ENODEV || error == -ENXIO) return {SourceState::no_device, kAbsent};
   return {SourceState::opening, what + ": " + errno_text(error)};
 }
 
@@ -33,7 +36,7 @@ CaptureFault cannot_open(int error, const std::string& refusal) {
     case ENOENT:
     case ENODEV:
     case ENXIO:
-      return {SourceState::no_device, "there is no such device; check cable and power"};
+      return {SourceState::no_device, kAbsent};
     case EACCES:
     case EPERM:
       return {SourceState::opening, "may not be opened; add the user to the group video"};
@@ -103,8 +106,12 @@ struct Buffer {
 
 }  // namespace
 
-V4l2Session::V4l2Session(V4l2Calls& calls, const CaptureOptions& options)
-    : calls_(calls), options_(options), device_(calls), wake_fd_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
+V4l2Session::V4l2Session(std::string path, V4l2Calls& calls, const CaptureOptions& options)
+    : path_(std::move(path)),
+      calls_(calls),
+      options_(options),
+      device_(calls),
+      wake_fd_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
 
 V4l2Session::~V4l2Session() {
   close();
@@ -117,8 +124,8 @@ void V4l2Session::remark(const std::string& words) {
   settings_.remark += (settings_.remark.empty() ? "" : "; ") + words;
 }
 
-std::optional<CaptureFault> V4l2Session::open(const std::string& path) {
-  if (const int error = device_.open(path); error != 0) return cannot_open(error, device_.refusal());
+std::optional<CaptureFault> V4l2Session::open() {
+  if (const int error = device_.open(path_); error != 0) return cannot_open(error, device_.refusal());
   settings_.name = device_.card() + " (" + device_.bus() + ")";
   if (const std::string missing = device_.missing_signal(); !missing.empty())
     return CaptureFault{SourceState::no_signal, missing};
@@ -322,7 +329,7 @@ bool V4l2Session::queue_returned() noexcept {
   }
 }
 
-V4l2Session::Event V4l2Session::next(std::chrono::milliseconds timeout, V4l2Frame& frame) noexcept {
+V4l2Session::Event V4l2Session::next(std::chrono::milliseconds timeout, SessionFrame& frame) noexcept {
   if (given_up_ || !queue_returned()) return Event::broken;
   const V4l2Calls::Ready ready = calls_.wait(device_.fd(), wake_fd_, static_cast<int>(timeout.count()));
   if (ready.woken) {
@@ -350,7 +357,7 @@ bool V4l2Session::take_events() noexcept {
   return changed;
 }
 
-V4l2Session::Event V4l2Session::dequeue(V4l2Frame& frame) noexcept {
+V4l2Session::Event V4l2Session::dequeue(SessionFrame& frame) noexcept {
   Buffer buffer(device_);
   const v4l2_buffer& b = buffer.b;
   if (const int error = device_.ioctl(VIDIOC_DQBUF, &buffer.b); error != 0) {
@@ -369,11 +376,12 @@ V4l2Session::Event V4l2Session::dequeue(V4l2Frame& frame) noexcept {
       static_cast<std::uint64_t>(std::int64_t{static_cast<std::int32_t>(b.sequence - last_sequence_)});
   last_sequence_ = b.sequence;
   frame.frame_id = frame_id_;
+  frame.exposure_us = settings_.exposure_us;
   if ((b.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC) {
     frame.stamp = (b.flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE
-                      ? V4l2Frame::Stamp::start_of_exposure
-                      : V4l2Frame::Stamp::end_of_frame;
-    frame.t_driver_mono_ns =
+                      ? SessionFrame::Stamp::start_of_exposure
+                      : SessionFrame::Stamp::end_of_frame;
+    frame.t_stamp_mono_ns =
         std::int64_t{b.timestamp.tv_sec} * 1'000'000'000 + std::int64_t{b.timestamp.tv_usec} * 1000;
   }
   const bool planes = device_.is_multi_planar();
@@ -390,8 +398,8 @@ V4l2Session::Event V4l2Session::dequeue(V4l2Frame& frame) noexcept {
 }
 
 // True where the buffer stays with the reader.
-bool V4l2Session::keep(std::uint32_t index, std::span<const std::byte> bytes, V4l2Frame& frame) noexcept {
-  frame.outcome = V4l2Frame::Outcome::complete;
+bool V4l2Session::keep(std::uint32_t index, std::span<const std::byte> bytes, SessionFrame& frame) noexcept {
+  frame.outcome = SessionFrame::Outcome::complete;
   if (direct_) {
     frame.buffer = index;
     frame.bytes = bytes;
@@ -401,7 +409,7 @@ bool V4l2Session::keep(std::uint32_t index, std::span<const std::byte> bytes, V4
   {
     const std::lock_guard lock(mutex_);
     if (returned_.empty()) {
-      frame.outcome = V4l2Frame::Outcome::no_room;
+      frame.outcome = SessionFrame::Outcome::no_room;
       return false;
     }
     frame.buffer = returned_.back();
@@ -411,6 +419,11 @@ bool V4l2Session::keep(std::uint32_t index, std::span<const std::byte> bytes, V4
   unpack_v4l2(packing_, layout_.width, layout_.height, layout_.stride, bytes, pool_->buffer(frame.buffer));
   frame.bytes = pool_->buffer(frame.buffer);
   return false;
+}
+
+CaptureFault V4l2Session::fault() const {
+  if (error_ == -ENODEV || error_ == -ENXIO) return {SourceState::no_device, "is gone; looking for it"};
+  return {SourceState::stalled, "broke off, opening it again: " + errno_text(error_)};
 }
 
 std::string V4l2Session::refresh() {

@@ -87,11 +87,11 @@ struct V4l2Subject {
   std::string missing() { return {}; }
   std::unique_ptr<CaptureSource> make() {
     device.run();
-    return std::make_unique<V4l2Source>(FakeV4l2::kPath, CaptureOptions{}, device);
+    return make_v4l2_source(FakeV4l2::kPath, CaptureOptions{}, device);
   }
   std::unique_ptr<CaptureSource> make_silent() {
     device.hush();
-    return std::make_unique<V4l2Source>(FakeV4l2::kPath, CaptureOptions{}, device);
+    return make_v4l2_source(FakeV4l2::kPath, CaptureOptions{}, device);
   }
 };
 INSTANTIATE_TYPED_TEST_SUITE_P(V4l2Direct, CaptureContract, V4l2Subject<true>);

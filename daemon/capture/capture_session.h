@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "daemon/capture/capture_source.h"
+
+namespace lightwell {
+
+// Why there are no frames, as a state and in words that follow the device's name.
+struct CaptureFault {
+  SourceState state = SourceState::opening;
+  std::string message;
+};
+
+// What was agreed with the device, read back from it.
+struct SessionSettings {
+  std::string name;  // "card (bus)"
+  FrameFormat format;
+  std::string device_format;  // "Y16"
+  double rate_hz = 0;         // 0: not known
+  double exposure_us = 0;     // 0: not known
+  std::string remark;         // what a person should know; often empty
+};
+
+struct SessionFrame {
+  enum class Outcome { complete, incomplete, no_room };  // no_room: every buffer is leased
+  enum class Stamp {
+    none,
+    start_of_exposure,
+    end_of_frame
+  };  // of the device, in CLOCK_MONOTONIC; none: another clock
+  Outcome outcome = Outcome::incomplete;
+  std::size_t buffer = 0;  // goes back through CaptureSession::give_back where complete
+  std::span<const std::byte> bytes;
+  std::uint64_t frame_id = 0;  // for FrameSequence: above 16 bit
+  Stamp stamp = Stamp::none;
+  std::int64_t t_stamp_mono_ns = 0;
+  std::int64_t received_mono_ns = 0;
+  double exposure_us = 0;  // of this frame
+  double gain_db = 0;
+};
+
+// One connection to a device that hands over frames one after another, from opening to its end; WatchedSource makes
+// one after another of them. Threading: one thread does everything but give_back, wake and all_returned, which are for
+// any thread.
+class CaptureSession {
+ public:
+  enum class Event { nothing, frame, source_changed, broken };
+
+  virtual ~CaptureSession() = default;  // after close, and after the last buffer has come back
+
+  // Opens, asks for signal and format, configures, reads back.
+  virtual std::optional<CaptureFault> open() = 0;
+  // Allocates the buffers and lets frames come.
+  virtual std::optional<CaptureFault> start() = 0;
+  // The next frame or what happened instead; nothing: the time is over, or wake was called. broken: fault() says why;
+  // the session is over.
+  virtual Event next(std::chrono::milliseconds timeout, SessionFrame& frame) noexcept = 0;
+  [[nodiscard]] virtual CaptureFault fault() const = 0;
+  // Asks what no frame tells. In words why there is no signal; empty: there is one.
+  virtual std::string refresh() = 0;
+  [[nodiscard]] virtual const SessionSettings& settings() const = 0;
+
+  virtual void give_back(std::size_t buffer) noexcept = 0;
+  virtual void wake() noexcept = 0;
+  // Ends the connection; buffers that are out may still come back.
+  virtual void close() noexcept = 0;
+  [[nodiscard]] virtual bool all_returned() const noexcept = 0;
+};
+
+}  // namespace lightwell

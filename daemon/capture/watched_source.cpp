@@ -1,0 +1,328 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/capture/watched_source.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <utility>
+
+#include "daemon/clock.h"
+
+namespace lightwell {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kRetry = 200ms;       // to open a node that is missing or busy costs microseconds
+constexpr auto kLookAround = 500ms;  // signal and automatic exposure
+constexpr auto kTick = 100ms;        // a stall is found this late at most
+constexpr auto kFirstFrameLimit = 500ms;
+constexpr auto kSilenceMinimum = 150ms;  // below, a busy host would pass for a stalled camera
+constexpr auto kReopenMinimum = 1s;
+
+struct Token {
+  static void* of(std::size_t buffer) { return reinterpret_cast<void*>(buffer); }
+  static std::size_t buffer(void* token) { return reinterpret_cast<std::size_t>(token); }
+};
+
+void give_lease_back(void* session, void* token) noexcept {
+  static_cast<CaptureSession*>(session)->give_back(Token::buffer(token));
+}
+
+const char* words(SessionFrame::Stamp stamp) {
+  switch (stamp) {
+    case SessionFrame::Stamp::start_of_exposure:
+      return "stamped at the start of the exposure";
+    case SessionFrame::Stamp::end_of_frame:
+      return "stamped at the end of the frame";
+    case SessionFrame::Stamp::none:
+      break;
+  }
+  return "without stamps in our clock, times are of reception";
+}
+
+std::string summary(const SessionSettings& s, SessionFrame::Stamp stamp) {
+  std::array<char, 200> text{};
+  std::snprintf(text.data(), text.size(), ": %d×%d %s from %s, %.4g Hz, exposure %.4g ms, %s", s.format.width,
+                s.format.height, std::string(name(s.format.pixel_format)).c_str(), s.device_format.c_str(),
+                s.rate_hz, s.exposure_us * 1e-3, words(stamp));
+  return s.name + text.data() + (s.remark.empty() ? "" : "; " + s.remark);
+}
+
+}  // namespace
+
+WatchedSource::WatchedSource(std::string kind, std::string what, Connect connect, Status refusal)
+    : kind_(std::move(kind)),
+      what_(std::move(what)),
+      make_session_(std::move(connect)),
+      refusal_(std::move(refusal)) {}
+
+WatchedSource::~WatchedSource() {
+  stop();
+}
+
+Status WatchedSource::start() {
+  if (!refusal_) return refusal_;
+  verify_bug(!thread_.joinable(), "capture source started twice");
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = false;
+    state_ = SourceState::no_device;
+    message_ = "looking for " + what_;
+  }
+  thread_ = std::thread(&WatchedSource::run, this);
+  return {};
+}
+
+void WatchedSource::stop() noexcept {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+    if (current_ != nullptr) current_->wake();
+  }
+  wake_.notify_all();
+  thread_.join();
+  const std::lock_guard lock(mutex_);
+  state_ = SourceState::no_device;
+  message_ = "stopped";
+}
+
+FrameLease WatchedSource::wait(std::chrono::milliseconds timeout) noexcept {
+  std::unique_lock lock(mutex_);
+  if (!thread_.joinable()) return {};
+  if (!frame_ready_.wait_for(lock, timeout, [&] { return slot_.session != nullptr; })) return {};
+  const Slot slot = std::exchange(slot_, {});
+  return {slot.info, slot.frame.bytes, give_lease_back, slot.session, Token::of(slot.frame.buffer)};
+}
+
+// What is wrong is said once, not at every try.
+void WatchedSource::report(SourceState state, const std::string& message) {
+  const std::lock_guard lock(mutex_);
+  state_ = state;
+  if (message == message_) return;
+  message_ = message;
+  if (state == SourceState::streaming)
+    spdlog::info("{}:{}: {}", kind_, what_, message);
+  else
+    spdlog::warn("{}:{}: {}", kind_, what_, message);
+}
+
+// False when stopping.
+bool WatchedSource::pause(std::chrono::milliseconds time) {
+  std::unique_lock lock(mutex_);
+  return !wake_.wait_for(lock, time, [&] { return stopping_; });
+}
+
+void WatchedSource::run() {
+  for (;;) {
+    auto session = connect();
+    if (session == nullptr) return;
+    watch(*session);
+    bool had_frames = false;
+    {
+      const std::lock_guard lock(mutex_);
+      had_frames = first_frame_;
+    }
+    retire(std::move(session));
+    // A device that fails at its first frame is not opened as fast as it fails.
+    if (!pause(had_frames ? 0ms : kRetry)) return;
+  }
+}
+
+std::unique_ptr<CaptureSession> WatchedSource::connect() {
+  do {
+    forget_returned();
+    auto session = make_session_();
+    auto fault = session->open();
+    if (!fault) fault = session->start();
+    if (fault) {
+      session->close();
+      report(fault->state, what_ + " " + fault->message);
+      continue;
+    }
+    const std::lock_guard lock(mutex_);
+    if (stopping_) return nullptr;
+    current_ = session.get();
+    settings_ = session->settings();
+    sequence_.reconnected();
+    first_frame_ = false;
+    has_signal_ = true;
+    last_frame_ = Clock::now();
+    period_ = std::chrono::nanoseconds(
+        settings_.rate_hz > 0 ? static_cast<std::int64_t>(1e9 / settings_.rate_hz) : 1'000'000'000);
+    if (state_ == SourceState::no_device) state_ = SourceState::opening;
+    return session;
+  } while (pause(kRetry));
+  return nullptr;
+}
+
+// Until the session is over.
+void WatchedSource::watch(CaptureSession& session) {
+  auto looked = Clock::now();
+  bool said = false;
+  for (;;) {
+    SessionFrame frame;
+    const CaptureSession::Event event = session.next(kTick, frame);
+    switch (event) {
+      case CaptureSession::Event::frame:
+        frame_done(session, frame);
+        break;
+      case CaptureSession::Event::nothing:
+        break;
+      case CaptureSession::Event::source_changed:
+        return report(SourceState::wrong_format, what_ + " has another picture size now; opening it again");
+      case CaptureSession::Event::broken: {
+        const CaptureFault fault = session.fault();
+        return report(fault.state, what_ + " " + fault.message);
+      }
+    }
+    std::chrono::nanoseconds silence{0}, limit{0};
+    bool flowing = false, signal = true;
+    {
+      const std::lock_guard lock(mutex_);
+      if (stopping_) return;
+      silence = Clock::now() - last_frame_;
+      limit = silence_limit();
+      flowing = first_frame_ && silence < limit;
+      signal = has_signal_;
+    }
+    if (Clock::now() - looked > kLookAround) {
+      looked = Clock::now();
+      look_around(session);
+      continue;
+    }
+    if (!signal) {
+      said = false;
+      continue;
+    }
+    if (flowing) {
+      silent_sessions_ = 0;
+      if (!said) report(SourceState::streaming, summary(session.settings(), stamp_));
+      said = true;
+    } else if (silence >= limit) {
+      said = false;
+      report(SourceState::stalled, what_ + " is there but sends no frames");
+    }
+    const auto reopen = std::max<std::chrono::nanoseconds>(10 * period_, kReopenMinimum) *
+                        (1 << std::min(silent_sessions_, 2));
+    if (silence < reopen) continue;
+    ++silent_sessions_;
+    return;
+  }
+}
+
+// What no frame tells: signal and exposure.
+void WatchedSource::look_around(CaptureSession& session) {
+  const std::string missing = session.refresh();
+  {
+    const std::lock_guard lock(mutex_);
+    settings_ = session.settings();
+    has_signal_ = missing.empty();
+    if (!has_signal_) last_frame_ = Clock::now();  // silence is not the camera's fault
+  }
+  if (!missing.empty()) report(SourceState::no_signal, what_ + " " + missing);
+}
+
+void WatchedSource::frame_done(CaptureSession& session, const SessionFrame& frame) noexcept {
+  Slot old;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto now = Clock::now();
+    // A slow camera moves its own limit; a single pause moves it by no more than a factor.
+    if (first_frame_)
+      period_ = std::max(period_ * 7 / 8, std::min<std::chrono::nanoseconds>(now - last_frame_, 4 * period_));
+    last_frame_ = now;
+    // What a driver sends without a signal is noise or a test picture.
+    if (frame.outcome == SessionFrame::Outcome::incomplete || !has_signal_) {
+      ++counters_.incomplete;
+      counters_.lost += sequence_.incomplete(frame.frame_id);
+      if (frame.outcome == SessionFrame::Outcome::complete) old = {&session, frame, {}};
+    } else {
+      const FrameSequence::Step step = sequence_.next(frame.frame_id);
+      counters_.lost += step.lost;
+      ++counters_.received;
+      if (!first_frame_ && delivered_before_) ++counters_.reconnects;
+      first_frame_ = delivered_before_ = true;
+      stamp_ = frame.stamp;
+      settings_.exposure_us = frame.exposure_us;
+      if (frame.outcome == SessionFrame::Outcome::no_room) {
+        ++counters_.skipped;
+        return;
+      }
+      old = std::exchange(slot_, {&session, frame, frame_info(frame, step.sequence)});
+      if (old.session != nullptr) ++counters_.skipped;
+      state_ = SourceState::streaming;
+      frame_ready_.notify_one();
+    }
+  }
+  if (old.session != nullptr) old.session->give_back(old.frame.buffer);
+}
+
+FrameInfo WatchedSource::frame_info(const SessionFrame& frame, std::uint64_t sequence) noexcept {
+  FrameInfo info;
+  info.format = settings_.format;
+  info.sequence = sequence;
+  info.received_mono_ns = frame.received_mono_ns;
+  const auto half_exposure = static_cast<std::int64_t>(frame.exposure_us * 500);
+  std::int64_t middle = frame.received_mono_ns - half_exposure;
+  if (frame.stamp == SessionFrame::Stamp::start_of_exposure) middle = frame.t_stamp_mono_ns + half_exposure;
+  if (frame.stamp == SessionFrame::Stamp::end_of_frame) middle = frame.t_stamp_mono_ns - half_exposure;
+  info.capture_mono_ns = std::max(std::min(middle, frame.received_mono_ns), last_capture_ns_ + 1);
+  last_capture_ns_ = info.capture_mono_ns;
+  info.capture_utc_ns = info.capture_mono_ns + (utc_now_ns() - mono_now_ns());
+  info.exposure_us = frame.exposure_us;
+  info.gain_db = frame.gain_db;
+  info.temperature_c = std::numeric_limits<float>::quiet_NaN();
+  return info;
+}
+
+void WatchedSource::retire(std::unique_ptr<CaptureSession> session) {
+  Slot left;
+  {
+    const std::lock_guard lock(mutex_);
+    current_ = nullptr;
+    left = std::exchange(slot_, {});
+    if (left.session != nullptr) ++counters_.skipped;
+  }
+  if (left.session != nullptr) left.session->give_back(left.frame.buffer);
+  session->close();
+  retired_.push_back(std::move(session));
+  forget_returned();
+}
+
+void WatchedSource::forget_returned() {
+  std::erase_if(retired_, [](const auto& session) { return session->all_returned(); });
+}
+
+std::chrono::nanoseconds WatchedSource::silence_limit() const {
+  const auto limit = std::max<std::chrono::nanoseconds>(3 * period_, kSilenceMinimum);
+  return first_frame_ ? limit : std::max<std::chrono::nanoseconds>(limit, kFirstFrameLimit);
+}
+
+SourceState WatchedSource::state() const noexcept {
+  const std::lock_guard lock(mutex_);
+  const bool silent = current_ != nullptr && has_signal_ && Clock::now() - last_frame_ > silence_limit();
+  return state_ == SourceState::streaming && silent ? SourceState::stalled : state_;
+}
+
+std::string WatchedSource::describe() const {
+  const std::lock_guard lock(mutex_);
+  return message_;
+}
+
+CaptureCounters WatchedSource::counters() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return counters_;
+}
+
+double WatchedSource::rate_hz() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return settings_.rate_hz;
+}
+
+}  // namespace lightwell
