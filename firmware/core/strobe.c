@@ -25,6 +25,11 @@ void strobe_trigger(strobe* self, uint32_t n, uint64_t tick) {
   self->triggers[self->newest].answered = false;
 }
 
+void strobe_no_trigger(strobe* self, uint32_t n) {
+  for (unsigned slot = 0; slot < STROBE_TRIGGERS; ++slot)
+    if (self->triggers[slot].n == n) self->triggers[slot].valid = false;
+}
+
 // Slot of the last trigger at or before tick; STROBE_TRIGGERS: none is known.
 static unsigned trigger_before(const strobe* self, uint64_t tick) {
   for (unsigned age = 0; age < STROBE_TRIGGERS; ++age) {

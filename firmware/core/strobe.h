@@ -15,7 +15,7 @@
 extern "C" {
 #endif
 
-enum { STROBE_TRIGGERS = 4 };
+enum { STROBE_TRIGGERS = 8 };  // some of them still to come
 
 typedef struct {
   uint32_t n;  // trigger
@@ -43,8 +43,11 @@ typedef struct {
 // period: of the triggers, ticks. The window is held below 7/8 of it.
 void strobe_init(strobe* self, uint64_t window, uint64_t period, uint64_t bounce);
 
-// A trigger was sent; call before edges that may answer it.
+// A trigger will be sent, or was; call before edges that may answer it.
 void strobe_trigger(strobe* self, uint32_t n, uint64_t tick);
+
+// It was not sent after all.
+void strobe_no_trigger(strobe* self, uint32_t n);
 
 // An edge. True: *report holds a strobe that this edge has ended.
 bool strobe_edge(strobe* self, uint64_t tick, bool rise, strobe_report* report);

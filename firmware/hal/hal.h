@@ -2,12 +2,47 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// All that a port provides. Nothing above this header touches a register.
+// All that a port provides. Nothing above this header touches a register; nothing below it decides anything.
 
 #include <stdbool.h>
 #include <stdint.h>
 
-void hal_init(void);
-uint32_t hal_counter_us(void);      // free-running, wraps at 2^32
+#include "firmware/core/board.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Clocks, pins, timer, interrupts; the trigger low, the camera without power. The facts stay where they are.
+const board_facts* hal_init(void);
+
+uint32_t hal_ticks(void);  // the free-running timer that makes and stamps edges; wraps at 2^32
+
+// The link to the host: UART, or USB bulk.
 bool hal_link_read(uint8_t* byte);  // false: nothing has arrived
-void hal_link_write(uint8_t byte);  // waits for room
+bool hal_link_ready(void);          // one byte can be written without waiting
+void hal_link_write(uint8_t byte);
+
+// Trigger pulses, in order, made by output compare. The port holds PULSES_AHEAD of them.
+void hal_pulse(uint32_t rise, uint32_t fall);
+bool hal_pulse_done(bool* made);  // one more has ended; made false: its time had passed when it was armed
+void hal_pulses_forget(void);     // none of those waiting is made or reported; the line is low
+
+typedef struct {
+  board_input input;
+  uint32_t stamp;
+} hal_edge_event;
+
+bool hal_edge(hal_edge_event* event);  // captured edges, in order of each input
+bool hal_sample(uint16_t* code);       // of the photodiode, at facts->sample_hz
+bool hal_imu(float acceleration[3], float rate[3], uint32_t* stamp);  // m/s², rad/s
+bool hal_temperature(uint8_t* sensor, int32_t* reading_mc);           // a few a second
+bool hal_button(void);
+void hal_led(bool lit);
+void hal_camera_power(bool on);
+uint32_t hal_overruns(void);  // edges, samples or bytes lost since the start
+void hal_watchdog(void);      // must be called every second, or the board starts anew
+
+#ifdef __cplusplus
+}
+#endif
