@@ -324,4 +324,33 @@ TEST_F(FirmwareImage, FollowsAReferenceAndPairsStrobes) {
   EXPECT_GE(paired, 3);
 }
 
+// Clocks, converter, DMA and I2C are stubs there that read 0: what is shown is that the image starts, none of its waits is
+// endless, and its interrupts and serial line work.
+TEST_F(FirmwareImage, TheStm32ImageStartsAndAnswers) {
+  Emulator emulator("netduinoplus2", image("lightwell-sync-f405.elf"), false);
+  ASSERT_TRUE(emulator.connected);
+  const auto hello = emulator.ask(SYNC_HELLO_REQUEST, SYNC_HELLO);
+  ASSERT_TRUE(hello);
+  EXPECT_EQ(hello->hello.schema_hash, SYNC_SCHEMA_HASH);
+  EXPECT_EQ(hello->hello.capabilities & SYNC_CAN_UPDATE, 0u);  // it has no verifier
+  sync_message begin{};
+  begin.type = SYNC_UPDATE_BEGIN;
+  begin.update_begin.size = 1;
+  const auto refused = emulator.ask(begin, SYNC_FAULT);
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->fault.code, SYNC_FAULT_UNSUPPORTED);
+}
+
+// Flash and RAM are held to 64 and 16 KB by the linker scripts.
+TEST_F(FirmwareImage, EveryFrameIsKnownAndTheDeepestStackFits) {
+  for (const char* program : {"python3", "arm-none-eabi-objdump"})
+    if (!have(program)) GTEST_SKIP() << program << " is not installed";
+  for (const char* name : {"lightwell-sync-f405", "lightwell-sync-mps2"}) {
+    const std::string command =
+        LIGHTWELL_SOURCE_DIR "/scripts/firmware-stack " + build_.path().string() + " " + name;
+    EXPECT_EQ(std::system(command.c_str()), 0) << name;
+    EXPECT_NE(std::system((command + " 256 >/dev/null").c_str()), 0) << "a limit that is passed must be said";
+  }
+}
+
 }  // namespace

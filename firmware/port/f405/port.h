@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// The parts of this port, and the pins:
+//   PA0  trigger out      TIM2_CH1        PB6  link, transmit   USART1_TX
+//   PA1  strobe in        TIM2_CH2        PB7  link, receive    USART1_RX
+//   PA2  PPS or genlock   TIM2_CH3        PB8  I2C1_SCL, PB9 I2C1_SDA: IMU and temperatures
+//   PA3  timecode in      TIM2_CH4        PB12 LED, PB13 button (to ground), PB14 camera power
+//   PC0  photodiode       ADC123_IN10
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "firmware/core/flash.h"
+
+// The 168 MHz of the PLL, and with it 84 MHz for timers and USART1; without crystal and PLL 16 MHz. Returns the timers' rate.
+uint32_t clocks_start(void);
+
+void edges_start(void);
+uint32_t edges_overruns(void);
+
+void link_start(uint32_t clock_hz);
+uint32_t link_overruns(void);
+
+void light_start(uint32_t clock_hz, uint32_t sample_hz);
+uint32_t light_overruns(void);
+
+void sensors_start(uint32_t clock_hz);
+
+// The two copies of the settings. Image regions cannot be written: this board has no boot program.
+extern const flash chip_flash;
