@@ -33,6 +33,7 @@ struct Options {
   int shadow_size = 256;
   bool soft_edges = false;
   int interleave = 2;  // pixels a side that share the weak lights; 1: none do
+  bool light_lists = false;
   int width = 640;
   int height = 480;
   bool size_given = false;  // else a plate's own

@@ -49,6 +49,7 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   auto surfaces = SurfaceShading::create(scene, r.nothing_casts_,
                                          {options.simplify_casters, options.soft_edges, options.interleave});
   if (!surfaces) return surfaces.error();
+  if (Status s = surfaces->use_light_lists(options.light_lists); !s) return s.error();
   auto background = gl::make_program("fullscreen_vertex", "background_fragment");
   if (!background) return background.error();
   r.gbuffer_ = std::move(gbuffer).value();

@@ -33,6 +33,7 @@ struct RendererOptions {
   bool soft_edges = false;       // of shadows, as wide as their lights make them; else those of points
   // Pixels a side of the square over which weak lights are spread, 1, 2 or 4; 1: each pixel takes all lights.
   int interleave = 2;
+  bool light_lists = false;     // SurfaceShading::use_light_lists
   bool measure_passes = false;  // waits for each pass, to time it
 };
 
@@ -68,6 +69,8 @@ class Renderer {
   void set_shadow_texels(double share) { atlas_.set_share(share); }
   // Light as if nothing cast shadows, or with them.
   Status set_shadows(bool on);
+  // Each pixel takes the lights that its normal's region lists, or looks at all: the same picture.
+  Status set_light_lists(bool on) { return surfaces_.use_light_lists(on); }
   // Bounds what casts shadows, but for what supports the scene; without such all that is seen.
   [[nodiscard]] const Sphere& object_bounds() const {
     return casters_.objects.radius > 0 ? casters_.objects : casters_.scene;

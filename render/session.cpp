@@ -74,6 +74,7 @@ class Session {
     renderer_options.shadow_size = options_.shadow_size;
     renderer_options.soft_edges = options_.soft_edges;
     renderer_options.interleave = options_.interleave;
+    renderer_options.light_lists = options_.light_lists;
     renderer_options.measure_passes = !options_.stats.empty();
     auto renderer = Renderer::create(scene_, renderer_options);
     if (!renderer) return renderer.error();
@@ -305,6 +306,7 @@ class Session {
       look_.exposure_ev100 = renderer_->exposure_ev100() - stops;
       renderer_->set_look(look_);
     }
+    if (Status s = renderer_->set_light_lists(options_.light_lists != window.switches().lists); !s) return s;
     return renderer_->set_shadows(window.switches().shadows);
   }
 

@@ -63,9 +63,10 @@ Status add(gl::Program& made, const std::string& defines) {
 
 }  // namespace
 
-Result<SurfaceShading::Programs> SurfaceShading::make_programs(bool shadows) const {
+Result<SurfaceShading::Programs> SurfaceShading::make_programs(bool shadows, bool lists) const {
   Programs made;
-  const std::string facts = kPasses + models_ + (shadows ? look_up_ : no_look_up_);
+  const std::string facts = kPasses + models_ + (shadows ? look_up_ : no_look_up_) + "#define LIGHT_LISTS " +
+                            (lists ? "1\n" + LightLists::facts() : "0\n");
   if (Status s = add(made.whole, facts + "#define LIGHT_PASS WHOLE\n"); !s) return s.error();
   if (interleave_ == 1) return made;
   const std::string filter = filter_facts(interleave_) + std::string(shader_text("interleave.glsl"));
@@ -81,20 +82,32 @@ Result<SurfaceShading> SurfaceShading::create(const Scene& scene, bool nothing_c
   shading.models_ = shading_models(scene) + emission_fact(scene);
   shading.look_up_ = look_up(nothing_casts, options);
   shading.no_look_up_ = look_up(true, options);
-  auto programs = shading.make_programs(true);
-  if (!programs) return programs.error();
-  shading.shadowed_ = std::move(programs).value();
+  if (Status s = shading.need(true, false); !s) return s.error();
   shading.light_block_ =
       gl::make_buffer(GL_UNIFORM_BUFFER, nullptr, kMaxLightsPerBlock * sizeof(LightRow), GL_DYNAMIC_DRAW);
   shading.no_vertices_ = gl::make_vertex_array();
   return shading;
 }
 
-Status SurfaceShading::make_unshadowed() {
-  if (unshadowed_.whole.id() != 0) return {};
-  auto programs = make_programs(false);
+Status SurfaceShading::need(bool shadows, bool lists) {
+  Programs& there = programs_[shadows ? 1 : 0][lists ? 1 : 0];
+  if (there.whole.id() != 0) return {};
+  auto programs = make_programs(shadows, lists);
   if (!programs) return programs.error();
-  unshadowed_ = std::move(programs).value();
+  there = std::move(programs).value();
+  return {};
+}
+
+Status SurfaceShading::make_unshadowed() {
+  return need(false, lists_);
+}
+
+Status SurfaceShading::use_light_lists(bool on) {
+  for (const bool shadows : {false, true}) {
+    if (programs_[shadows ? 1 : 0][lists_ ? 1 : 0].whole.id() == 0) continue;
+    if (Status s = need(shadows, on); !s) return s;
+  }
+  lists_ = on;
   return {};
 }
 
@@ -115,6 +128,7 @@ void SurfaceShading::set_lights(std::span<const LightRow> lights, std::span<cons
   const std::size_t strong = arrange_subsets(rows, all, interleave_);
   glBindBuffer(GL_UNIFORM_BUFFER, light_block_.id());
   glBufferSubData(GL_UNIFORM_BUFFER, 0, static_cast<GLsizeiptr>(rows.size() * sizeof(LightRow)), rows.data());
+  if (lists_) light_lists_.set(rows, strong, interleave_ * interleave_);
   shadow_page_ = shadow_page;
   lights_ = static_cast<int>(rows.size());
   strong_ = static_cast<int>(strong);
@@ -127,7 +141,7 @@ void SurfaceShading::set_lights(std::span<const LightRow> lights, std::span<cons
 
 void SurfaceShading::shade(bool shadows, const Sample& sample, const Target& target, const GBuffer& gbuffer,
                            const ShadowAtlas& atlas, const Casters& casters) const {
-  const Programs& programs = shadows ? shadowed_ : unshadowed_;
+  const Programs& programs = programs_[shadows ? 1 : 0][lists_ ? 1 : 0];
   glViewport(0, 0, width_, height_);
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);
@@ -162,6 +176,7 @@ void SurfaceShading::draw(const gl::Program& program, const Sample& sample, cons
   surfaces.set_texture("surface_map", 2, gbuffer.surface());
   surfaces.set_texture("materials", 3, gbuffer.materials());
   surfaces.set_texture("shadow_maps", 4, atlas.texture(shadow_page_));
+  if (lists_) surfaces.set_texture("light_lists", 7, light_lists_.texture());
   surfaces.set("atlas_side", static_cast<float>(atlas.side()));
   surfaces.set("light_count", lights_);
   surfaces.set("objects_centre", casters.objects.centre.data());

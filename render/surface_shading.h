@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 
 #include "render/camera.h"
 #include "render/casters.h"
 #include "render/gbuffer.h"
+#include "render/light_lists.h"
 #include "render/light_rows.h"
 #include "render/shadow_atlas.h"
 
@@ -29,6 +31,8 @@ class SurfaceShading {
   Status resize(int width, int height, GLuint depth);
   // For shade() with shadows = false.
   Status make_unshadowed();
+  // Each pixel takes the lights that its normal's region lists (light_lists.h), or looks at all; the picture is the same.
+  Status use_light_lists(bool on);
 
   // The lights that shade() draws, at most kMaxLightsPerBlock, with their maps, all on one page of the atlas.
   // all: of the picture, among them these
@@ -53,7 +57,9 @@ class SurfaceShading {
   struct Programs {
     gl::Program whole, subsets, filtered;
   };
-  Result<Programs> make_programs(bool shadows) const;
+  Result<Programs> make_programs(bool shadows, bool lists) const;
+  // Made when they are first needed.
+  Status need(bool shadows, bool lists);
   void draw(const gl::Program& program, const Sample& sample, const GBuffer& gbuffer,
             const ShadowAtlas& atlas, const Casters& casters) const;
 
@@ -61,7 +67,9 @@ class SurfaceShading {
   int height_ = 0;
   int interleave_ = 1;
   std::string models_, look_up_, no_look_up_;
-  Programs shadowed_, unshadowed_;
+  std::array<std::array<Programs, 2>, 2> programs_;  // [with shadows][with lists]
+  bool lists_ = false;
+  LightLists light_lists_;
   gl::Buffer light_block_;
   gl::VertexArray no_vertices_;
   gl::Texture subsets_;  // interleave.glsl

@@ -21,6 +21,7 @@ struct WindowSwitches {
   bool numbers = true;
   bool dome = false;
   bool shadows = true;
+  bool lists = false;  // the other way than asked for
   bool probe = false;
 };
 

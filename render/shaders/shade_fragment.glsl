@@ -111,11 +111,23 @@ void main() {
   Maps maps = Maps(position_material.xyz - objects_centre, position_material.xyz - scene_centre,
                    in_shadow_maps == 1u ? 1.0 : 0.0, in_shadow_maps == 2u, plane);
 #endif
+  // Of the lights, or of the entries that list them.
   int first = 0, step = 1, end = light_count;
+#if LIGHT_LISTS
+  int cell = cell_of(s.normal);
+  first = LISTED;
+  end = LISTED + list_entry(0, cell);
+#endif
   vec3 sum = vec3(0.0);
 #if LIGHT_PASS == SUBSETS
+#if LIGHT_LISTS
+  int begins = 2 + subset_of(at);
+  first = GROUPED + list_entry(begins, cell);
+  end = GROUPED + list_entry(begins + 1, cell);
+#else
   first = strong_count + subset_of(at);
   step = INTERLEAVE * INTERLEAVE;
+#endif
   // What the surface's colour makes of it is the filter's to say: so a pattern on a surface is no edge.
   Surface lobe = s, matt = s;
   lobe.diffuse = vec3(0.0);
@@ -132,11 +144,20 @@ void main() {
   Subsets weak = gather_subsets(at, s.normal, plane, position_material.xyz - eye, uint(position_material.w));
   bool wide = s.phong ? s.exponent <= WIDEST_EXPONENT : s.alpha2 >= LEAST_ALPHA2;
   if (weak.found >= LEAST_FOUND && (wide || s.specular == vec3(0.0))) {
+#if LIGHT_LISTS
+    end = LISTED + list_entry(1, cell);
+#else
     end = strong_count;
+#endif
     sum += s.diffuse * weak.diffuse + weak.specular;
   }
 #endif
-  for (int i = first; i < end; i += step) {
+  for (int k = first; k < end; k += step) {
+#if LIGHT_LISTS
+    int i = list_entry(k, cell);
+#else
+    int i = k;
+#endif
     vec4 to_light_extent = lights[i].to_light_extent;
     vec4 light = lights[i].illuminance_texel;
     vec3 to_light = to_light_extent.xyz;
