@@ -211,7 +211,7 @@ Casters::Body body_of(const Mesh& mesh, bool casts) {
 void append(const Mesh& mesh, bool with_vertices, Casters& casters) {
   Casters::Part part;
   part.primitive = mesh.primitive;
-  part.bounds = part.bounds_before = mesh.bounds;
+  part.bounds = mesh.bounds;
   part.first_index = static_cast<Index>(casters.indices.size());
   part.index_count = static_cast<Index>(mesh.triangles.size());
   part.first_position = static_cast<Index>(casters.positions.size());
@@ -255,7 +255,6 @@ void Casters::move(const Scene& scene_now, std::span<const std::size_t> moved) {
     return std::binary_search(moved.begin(), moved.end(), primitive);
   };
   for (Part& part : parts) {
-    part.bounds_before = part.bounds;
     part.moved = has_moved(part.primitive);
     if (!part.moved) continue;
     for (Index i = part.first_position; i < part.first_position + part.position_count; ++i)
@@ -272,6 +271,17 @@ void Casters::move(const Scene& scene_now, std::span<const std::size_t> moved) {
     part->bounds = bounding_sphere(body.positions);
   }
   bound(*this);
+}
+
+float Casters::farthest_move(const Scene& scene_now, std::span<const std::size_t> moved) const {
+  float farthest = 0;
+  for (const Body& body : bodies) {
+    if (!std::binary_search(moved.begin(), moved.end(), body.primitive)) continue;
+    for (std::size_t i = 0; i < body.vertices.size(); ++i)
+      farthest = std::max(farthest,
+                          (scene_now.vertices[body.vertices[i]].position - body.positions[i]).squaredNorm());
+  }
+  return std::sqrt(farthest);
 }
 
 namespace {

@@ -37,10 +37,8 @@ struct Casters {
     std::uint32_t index_count = 0;
     std::uint32_t first_position = 0;
     std::uint32_t position_count = 0;
-    Sphere bounds;  // of the primitive as it is seen
-    // Of the last move(): whether the part moved, and where it was.
-    bool moved = false;
-    Sphere bounds_before;
+    Sphere bounds;       // of the primitive as it is seen
+    bool moved = false;  // by the last move()
   };
   std::vector<Part> parts;
   // Primitives with holes, which stand in no run: they are drawn as they are seen. Their parts have no triangles.
@@ -62,6 +60,8 @@ struct Casters {
   // Follows these primitives of the scene that this was made of; the spheres become what they would be of the scene as
   // it now stands. Triangles stay those found at time 0.
   void move(const Scene& scene, std::span<const std::size_t> moved);
+  // How far a vertex of these primitives is at most, in the scene as it now stands, from where it is here. Metres.
+  [[nodiscard]] float farthest_move(const Scene& scene, std::span<const std::size_t> moved) const;
 };
 
 // Of a texel: how far simplified casters may be from those of the scene. A quarter is not seen among the 2×2

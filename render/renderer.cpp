@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 
 #include "render/light_subsets.h"
 #include "render/read_back.h"
@@ -75,12 +76,22 @@ void Renderer::find_casters(const Scene& scene, bool fine_ones) {
 }
 
 void Renderer::move(const Scene& scene, std::span<const std::size_t> moved) {
-  casters_.move(scene, moved);
   if (moved.empty()) return;
   gbuffer_.move(scene, moved);
-  if (options_.texels_by_power) fine_casters_.move(scene, moved);
-  const bool casts = std::any_of(moved.begin(), moved.end(),
+  std::vector<std::size_t> all;
+  std::set_union(waiting_.begin(), waiting_.end(), moved.begin(), moved.end(), std::back_inserter(all));
+  waiting_ = std::move(all);
+  casters_off_m_ = casters_.farthest_move(scene, waiting_);
+  if (casters_off_m_ > kMovedTexels * atlas_.finest_texel_m()) move_casters(scene);
+}
+
+void Renderer::move_casters(const Scene& scene) {
+  casters_.move(scene, waiting_);
+  if (options_.texels_by_power) fine_casters_.move(scene, waiting_);
+  const bool casts = std::any_of(waiting_.begin(), waiting_.end(),
                                  [&](std::size_t i) { return scene.primitives[i].casts_shadow; });
+  waiting_.clear();
+  casters_off_m_ = 0;
   if (casts || casters_.scene.radius != fitted_scene_.radius ||
       casters_.scene.centre != fitted_scene_.centre) {
     fitted_scene_ = casters_.scene;
@@ -257,7 +268,7 @@ void Renderer::shade_surfaces(bool shadows, Sums& sums, const SurfaceShading::Sa
   const GLuint so_far = sums.last().texture.id();
   sums.current = 1 - sums.current;
   surfaces_.shade(shadows, sample, {sums.last().framebuffer.id(), so_far, start_sum}, gbuffer_, atlas_,
-                  casters_);
+                  casters_, casters_off_m_);
 }
 
 Status Renderer::lay_over(const RadiancePicture& picture, int left, int bottom) {

@@ -3,6 +3,8 @@
 #include "render/shadow_atlas.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <tuple>
 
@@ -55,6 +57,13 @@ Status ShadowAtlas::make_pages() {
     pages_.push_back(std::move(page));
   }
   return {};
+}
+
+float ShadowAtlas::finest_texel_m() const {
+  float finest = std::numeric_limits<float>::infinity();
+  for (const ShadowTile& tile : tiles_.tiles())
+    if (!tile.stale) finest = std::min(finest, tile.row.texel / std::max(tile.row.fit[0], tile.row.fit[1]));
+  return std::isfinite(finest) ? finest : 0;
 }
 
 int ShadowAtlas::largest() const {

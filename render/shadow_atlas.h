@@ -51,7 +51,9 @@ class ShadowAtlas {
   // Gives each row, at most capacity(), its map, draws what is not there yet, and brings the rows into blocks. The casters
   // are those it was made of. A light that moved so little that its map stands takes the map's direction.
   Result<std::vector<Block>> draw(std::span<LightRow> rows, const Casters& coarse, const Casters& fine);
-  [[nodiscard]] int largest() const;                          // side of the last draw()'s largest map, texels
+  [[nodiscard]] int largest() const;  // side of the last draw()'s largest map, texels
+  // The smallest texel of the maps that stand, metres; 0 where none does.
+  [[nodiscard]] float finest_texel_m() const;
   [[nodiscard]] std::size_t drawn() const { return drawn_; }  // maps, by the last draw()
   // Where the last draw() drew, and the maps' MapRows into the page's clip space: for what else is to stand in them.
   [[nodiscard]] std::span<const Block> drawn_on() const { return drawn_on_; }

@@ -140,7 +140,7 @@ void SurfaceShading::set_lights(std::span<const LightRow> lights, std::span<cons
 }
 
 void SurfaceShading::shade(bool shadows, const Sample& sample, const Target& target, const GBuffer& gbuffer,
-                           const ShadowAtlas& atlas, const Casters& casters) const {
+                           const ShadowAtlas& atlas, const Casters& casters, float casters_off_m) const {
   const Programs& programs = programs_[shadows ? 1 : 0][lists_ ? 1 : 0];
   glViewport(0, 0, width_, height_);
   glEnable(GL_DEPTH_TEST);
@@ -153,7 +153,7 @@ void SurfaceShading::shade(bool shadows, const Sample& sample, const Target& tar
     glBindFramebuffer(GL_FRAMEBUFFER, subsets_target_.id());
     const GLuint nothing[4] = {0, 0, 0, 0};
     glClearBufferuiv(GL_COLOR, 0, nothing);
-    draw(programs.subsets, sample, gbuffer, atlas, casters);
+    draw(programs.subsets, sample, gbuffer, atlas, casters, casters_off_m);
   }
   glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
   const gl::Program& program = interleaved ? programs.filtered : programs.whole;
@@ -165,11 +165,11 @@ void SurfaceShading::shade(bool shadows, const Sample& sample, const Target& tar
   surfaces.set("start_sum", target.start_sum ? 1 : 0);
   surfaces.set("ambient", sample.ambient.data());
   if (interleaved) surfaces.set_texture("subset_map", 6, subsets_.id());
-  draw(program, sample, gbuffer, atlas, casters);
+  draw(program, sample, gbuffer, atlas, casters, casters_off_m);
 }
 
 void SurfaceShading::draw(const gl::Program& program, const Sample& sample, const GBuffer& gbuffer,
-                          const ShadowAtlas& atlas, const Casters& casters) const {
+                          const ShadowAtlas& atlas, const Casters& casters, float casters_off_m) const {
   const View& view = sample.view;
   const Uniforms surfaces(program);
   surfaces.set_texture("position_material_map", 1, gbuffer.position_material());
@@ -181,6 +181,7 @@ void SurfaceShading::draw(const gl::Program& program, const Sample& sample, cons
   surfaces.set("light_count", lights_);
   surfaces.set("objects_centre", casters.objects.centre.data());
   surfaces.set("scene_centre", casters.scene.centre.data());
+  surfaces.set("casters_off", casters_off_m);
   surfaces.set("eye", view.eye.data());
   if (strong_ < lights_) {
     const Vec3f axis = view.up.cross(view.right).normalized();

@@ -50,8 +50,9 @@ class SurfaceShading {
     bool first_block;  // ambient light and emission are drawn with it
     float weight;
   };
+  // casters_off_m: how far casters may be from where the maps show them
   void shade(bool shadows, const Sample& sample, const Target& target, const GBuffer& gbuffer,
-             const ShadowAtlas& atlas, const Casters& casters) const;
+             const ShadowAtlas& atlas, const Casters& casters, float casters_off_m) const;
 
  private:
   struct Programs {
@@ -61,7 +62,7 @@ class SurfaceShading {
   // Made when they are first needed.
   Status need(bool shadows, bool lists);
   void draw(const gl::Program& program, const Sample& sample, const GBuffer& gbuffer,
-            const ShadowAtlas& atlas, const Casters& casters) const;
+            const ShadowAtlas& atlas, const Casters& casters, float casters_off_m) const;
 
   int width_ = 0;
   int height_ = 0;

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <vector>
+
 #include "interface/atomic_file.h"
 #include "render/gltf_scene.h"
 #include "render/scene_motion.h"
@@ -79,6 +82,51 @@ TEST_F(MovingPictures, ABallThatMovedLooksLikeABallThatStandsThere) {
     EXPECT_LE(differ, simplify ? 2 * 3 * 40 * 4 / 4 : 0);
     ASSERT_TRUE(motion.move_to(0));
   }
+}
+
+// A ball that creeps: its shadow follows by steps of a quarter of the finest map's texel, and no step is seen.
+TEST_F(MovingPictures, ShadowsOfWhatCreepsFollowInStepsTooSmallToSee) {
+  Document moving = ball_on_floor({0, 0.5f, 0});
+  animate(moving, 0, "translation", {0, 1}, {0, 0.5f, 0, 0.1f, 0.5f, 0.05f}, "VEC3", 3);
+  auto scene = read(moving);
+  ASSERT_TRUE(scene.ok());
+  const LightSet lights = light_set({{Vec3f(1, 2, 1), Rgb::Constant(1000)},
+                                     {Vec3f(-1, 1, 0), Rgb(100, 200, 300)},
+                                     {Vec3f(0.9f, 0.3f, -0.2f), Rgb::Constant(200)}});
+  const SceneCamera camera = camera_at({0, 3, 6}, {0, 0.5f, 0});
+  render::RendererOptions options;
+  options.width = 160;
+  options.height = 120;
+  options.shadow_size = 128;
+  auto creeping = render::Renderer::create(*scene, options);
+  ASSERT_TRUE(creeping.ok()) << creeping.error().message;
+  render::SceneMotion motion(*scene);
+  int frames_drawn = 0;
+  constexpr int kFrames = 50;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    ASSERT_TRUE(motion.move_to(0.01 * frame));
+    creeping->move(*scene, motion.moved());
+    ASSERT_TRUE(creeping->render(lights, camera));
+    const std::size_t drawn = creeping->shadow_maps_drawn();
+    EXPECT_TRUE(drawn == 0 || drawn == 3) << drawn;
+    frames_drawn += drawn > 0 ? 1 : 0;
+    if (frame % 7 != 3) continue;
+    auto anew = render::Renderer::create(*scene, options);
+    ASSERT_TRUE(anew.ok());
+    anew->move(*scene, std::vector<std::size_t>{0});
+    ASSERT_TRUE(anew->render(lights, camera));
+    const auto shown = creeping->radiance(), exact = anew->radiance();
+    double off = 0, of = 0;
+    for (std::size_t i = 0; i < exact.rgba.size(); ++i) {
+      off += std::pow(static_cast<double>(shown.rgba[i] - exact.rgba[i]), 2);
+      of += std::pow(static_cast<double>(exact.rgba[i]), 2);
+    }
+    // A quarter of a texel along every outline.
+    EXPECT_LE(std::sqrt(off / of), 0.02) << frame;
+  }
+  EXPECT_GE(frames_drawn, 3);
+  EXPECT_LE(frames_drawn, kFrames / 2);
+  ASSERT_TRUE(motion.move_to(0));
 }
 
 }  // namespace
