@@ -101,8 +101,12 @@ class LightTransport {
 };
 
 Row steadiness_row(const std::string& scenario, const std::string& name, const render::Scene& scene,
-                   const LightTransport& transport, const Options& options) {
-  auto renderer = renderer_of(scene, 256, kWidth, kHeight);
+                   const LightTransport& transport, bool soft_edges, const Options& options) {
+  render::RendererOptions of_renderer;
+  of_renderer.width = kWidth;
+  of_renderer.height = kHeight;
+  of_renderer.soft_edges = soft_edges;
+  auto renderer = renderer_of(scene, of_renderer);
   if (!renderer) return {};
   ScenarioMaps maps(scenario);
   BestLights lights(PolarGrid(), kLights, Effort::thorough);
@@ -155,7 +159,9 @@ std::vector<Row> render_steadiness_rows(const Options& options) {
     if (!tracer) continue;
     const LightTransport transport(*tracer, shown->cameras.at(0), PolarGrid());
     for (const char* scenario : {"flicker", "day"})
-      rows.push_back(steadiness_row(scenario, std::string(scene.name), *shown, transport, options));
+      for (const bool soft : {false, true})
+        rows.push_back(steadiness_row(scenario, std::string(scene.name) + (soft ? ", soft edges" : ""),
+                                      *shown, transport, soft, options));
   }
   return rows;
 }

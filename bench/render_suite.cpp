@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numeric>
 
 #include "bench/forward_renderer.h"
 #include "bench/pictures/ray_tracer.h"
@@ -33,6 +34,14 @@ std::array<LightSet, 2> turning_lights(const LatLongImage& light, Method method,
     if (auto set = decompose(polar_map_from_lat_long(light, true, turn_rad), method, count)) sets[i] = *set;
   }
   return sets;
+}
+
+render::RendererOptions judged_options(int shadow_size) {
+  render::RendererOptions options;
+  options.width = pictures::kPictureWidth;
+  options.height = pictures::kPictureHeight;
+  options.shadow_size = shadow_size;
+  return options;
 }
 
 Row rendered_row(const JudgedPicture& judged, render::Renderer& renderer, Method method, int count,
@@ -96,19 +105,65 @@ Row forward_row(const JudgedPicture& judged, const Options& options) {
   return row;
 }
 
-// A light that turns by a twentieth of a degree a frame, as the sun does in twelve seconds.
-Row slow_row(const JudgedPicture& judged, render::Renderer& renderer, const Options& options) {
-  const auto start = turning_lights(judged.light, Method::best, kDefaultLights)[0];
+// What is off by default, and what is on, at the default number of lights.
+std::vector<Row> variant_rows(const JudgedPicture& judged, const Options& options) {
+  std::vector<std::pair<std::string, render::RendererOptions>> variants(
+      4, {"", judged_options(kDefaultShadowSize)});
+  variants[0].first = "best, soft edges";
+  variants[0].second.soft_edges = true;
+  variants[1].first = "best, interleave 1";
+  variants[1].second.interleave = 1;
+  variants[2].first = "best, interleave 4";
+  variants[2].second.interleave = 4;
+  variants[3].first = "best, light lists";
+  variants[3].second.light_lists = true;
+  std::vector<Row> rows;
+  for (const auto& [name, variant] : variants)
+    if (auto renderer = renderer_of(judged.scene, variant))
+      rows.push_back(rendered_row(judged, *renderer, Method::best, kDefaultLights, name, options));
+  return rows;
+}
+
+// A light that turns by a twentieth of a degree a frame, as the sun does in twelve seconds; to a degree and back.
+LightSet slow_light(const LightSet& start, std::size_t frame) {
   LightSet set = start;
+  const double step = std::abs(static_cast<double>(frame % 40) - 20);
+  const Eigen::AngleAxisf turn(static_cast<float>(step * 0.05 * kPi / 180), Vec3f::UnitY());
+  for (DirectionalLight& light : set.lights) light.direction = turn * light.direction;
+  return set;
+}
+
+Row slow_row(const JudgedPicture& judged, render::Renderer& renderer, const Options& options) {
+  const LightSet start = turning_lights(judged.light, Method::best, kDefaultLights)[0];
   return timed_frames("slow light, " + judged.name, "best, maps of 256", options, [&](std::size_t i) {
-    // To a degree and back.
-    const double step = std::abs(static_cast<double>(i % 40) - 20);
-    const Eigen::AngleAxisf turn(static_cast<float>(step * 0.05 * kPi / 180), Vec3f::UnitY());
-    for (std::size_t k = 0; k < set.lights.size(); ++k)
-      set.lights[k].direction = turn * start.lights[k].direction;
-    (void)renderer.render(set, judged.scene.cameras.at(0));
+    (void)renderer.render(slow_light(start, i), judged.scene.cameras.at(0));
     renderer.finish();
   });
+}
+
+// The pass that draws maps, alone: where every map is drawn, and where the light is slow.
+std::vector<Row> shadow_pass_rows(const JudgedPicture& judged, const Options& options) {
+  render::RendererOptions measured = judged_options(kDefaultShadowSize);
+  measured.measure_passes = true;
+  auto renderer = renderer_of(judged.scene, measured);
+  if (!renderer) return {};
+  const auto turning = turning_lights(judged.light, Method::best, kDefaultLights);
+  const auto row = [&](const std::string& name, const std::function<LightSet(std::size_t)>& lights) {
+    std::vector<double> shadow_ms;
+    double drawn = 0;
+    Row timed = timed_frames("maps, " + judged.name, name, options, [&](std::size_t i) {
+      (void)renderer->render(lights(i), judged.scene.cameras.at(0));
+      shadow_ms.push_back(renderer->pass_times().shadow_ms);
+      drawn += static_cast<double>(renderer->shadow_maps_drawn());
+    });
+    const auto frames = static_cast<double>(shadow_ms.size());
+    timed.values.emplace_back("maps_drawn_a_frame", drawn / frames);
+    timed.values.emplace_back("shadow_pass_mean_ms",
+                              std::accumulate(shadow_ms.begin(), shadow_ms.end(), 0.0) / frames);
+    return timed;
+  };
+  return {row("every map", [&](std::size_t i) { return turning[(i + 1) % 2]; }),
+          row("slow light", [&](std::size_t i) { return slow_light(turning[0], i); })};
 }
 
 std::vector<Row> picture_rows(const JudgedPicture& judged, const Options& options, bool all) {
@@ -133,6 +188,8 @@ std::vector<Row> picture_rows(const JudgedPicture& judged, const Options& option
   for (const int count : counts) rows.push_back(traced_row(judged, *tracer, count, options));
   if (all) {
     rows.push_back(forward_row(judged, options));
+    for (Row& row : variant_rows(judged, options)) rows.push_back(std::move(row));
+    for (Row& row : shadow_pass_rows(judged, options)) rows.push_back(std::move(row));
     rows.push_back(lights_row(judged, options));
   }
   return rows;
@@ -200,6 +257,12 @@ void add_comparisons(std::vector<Row>& rows, const std::vector<JudgedPicture>& j
       row.values.emplace_back("forward_over_ours_cpu", value_of(*forward, "cpu_ms") / cpu_ms);
     if (const Row* slow = row_named(rows, "slow light, " + picture.name, "best, maps of 256"))
       row.values.emplace_back("every_tile_over_slow_light_cpu", cpu_ms / value_of(*slow, "cpu_ms"));
+    const Row* every_map = row_named(rows, "maps, " + picture.name, "every map");
+    const Row* slow_maps = row_named(rows, "maps, " + picture.name, "slow light");
+    if (every_map != nullptr && slow_maps != nullptr)
+      row.values.emplace_back(
+          "every_tile_over_slow_light_shadow_pass",
+          value_of(*every_map, "shadow_pass_mean_ms") / value_of(*slow_maps, "shadow_pass_mean_ms"));
     const Row* lights = row_named(rows, "lights of a frame", picture.name);
     const double mitsuba = cpu_ms_at(rows, setting, "Mitsuba", error);
     if (lights != nullptr && std::isfinite(mitsuba))
@@ -256,6 +319,11 @@ std::optional<render::Renderer> renderer_of(const render::Scene& scene, int shad
   options.width = width;
   options.height = height;
   options.shadow_size = shadow_size;
+  return renderer_of(scene, options);
+}
+
+std::optional<render::Renderer> renderer_of(const render::Scene& scene,
+                                            const render::RendererOptions& options) {
   auto renderer = render::Renderer::create(scene, options);
   if (renderer) return std::move(renderer).value();
   std::fprintf(stderr, "left out: %s\n", renderer.error().message.c_str());

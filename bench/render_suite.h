@@ -38,7 +38,10 @@ Row timed_frames(const std::string& setting, const std::string& name, const Opti
 void add_error(Row& row, const pictures::PictureError& error);
 double value_of(const Row& row, const std::string& name);  // NaN: not there
 
-// The renderer with a scene at the judged size; says why on stderr where there is none.
+// A renderer of a scene; says why on stderr where there is none.
+std::optional<render::Renderer> renderer_of(const render::Scene& scene,
+                                            const render::RendererOptions& options);
+// The same at its defaults, at the judged size.
 std::optional<render::Renderer> renderer_of(const render::Scene& scene, int shadow_size,
                                             int width = pictures::kPictureWidth,
                                             int height = pictures::kPictureHeight);

@@ -99,6 +99,17 @@ void Renderer::move_casters(const Scene& scene) {
   }
 }
 
+Renderer::LostShadows Renderer::lost_shadows() const {
+  LostShadows lost;
+  lost.texel_m = 2 * casters_.objects.radius / static_cast<float>(options_.shadow_size);
+  for (const Casters::Part& part : casters_.parts) {
+    if (casters_.is_support[part.primitive]) continue;
+    ++lost.of;
+    if (2 * part.bounds.radius < lost.texel_m) ++lost.objects;
+  }
+  return lost;
+}
+
 Status Renderer::resize(int width, int height) {
   if (width == options_.width && height == options_.height) return {};
   options_.width = width;

@@ -76,6 +76,12 @@ class Renderer {
   [[nodiscard]] const Sphere& object_bounds() const {
     return casters_.objects.radius > 0 ? casters_.objects : casters_.scene;
   }
+  // What casts but is smaller than a texel of a map of shadow_size: its shadow is lost.
+  struct LostShadows {
+    std::size_t objects = 0, of = 0;
+    float texel_m = 0;
+  };
+  [[nodiscard]] LostShadows lost_shadows() const;
   void tone_map(double dt_s);
   // The same with another operator, which stays.
   void tone_map(ToneMap operation, double dt_s);

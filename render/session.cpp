@@ -88,6 +88,13 @@ class Session {
     return {};
   }
 
+  // What a user should know of the picture that comes.
+  void say_remarks() const {
+    const Renderer::LostShadows lost = renderer_->lost_shadows();
+    if (lost.objects > 0)
+      say(lost_shadows_text(options_.scene.string(), lost.objects, lost.of, lost.texel_m));
+  }
+
   Status run_off_screen() {
     const std::optional<int> frames =
         options_.frames || options_.seconds || options_.live ? options_.frames : std::optional<int>(1);
@@ -412,6 +419,7 @@ Status run_session(const Options& chosen, const std::atomic<bool>& stop) {
     if (Status s = session.prepare(); !s) return s;
     // Once all of it is known to work: a refusal is one line.
     for (const std::string& remark : remarks_on(*scene, *camera, **source, options)) say(remark);
+    session.say_remarks();
     if (screen != nullptr) return session.run_screen(*screen);
     return window != nullptr ? session.run_window(*window) : session.run_off_screen();
   };

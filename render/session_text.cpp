@@ -9,7 +9,7 @@ namespace {
 
 template <class... Values>
 std::string text(const char* format, Values... values) {
-  char line[160];
+  char line[256];
   std::snprintf(line, sizeof line, format, values...);
   return line;
 }
@@ -38,6 +38,14 @@ std::vector<std::string> overlay_text(const ViewNumbers& n) {
   lines.push_back(text("EV %.1f%s", n.ev100, n.ev_by_hand ? " by hand" : ""));
   lines.emplace_back("h: keys");
   return lines;
+}
+
+std::string lost_shadows_text(const std::string& scene, std::size_t objects, std::size_t of, float texel_m) {
+  return scene +
+         text(
+             ": %zu of %zu objects are smaller than a texel of the shadow maps (%.3g m), because what "
+             "casts lies so far apart: they cast no shadow that is seen; --shadow-size raises it",
+             objects, of, static_cast<double>(texel_m));
 }
 
 std::string plate_white_text(const std::string& plate, float white_cd_m2) {

@@ -126,6 +126,16 @@ TEST_F(BadInput, WithoutACameraOneThatSeesTheSceneIsUsedAndSaid) {
   EXPECT_GT(o.brightest(), 100);
 }
 
+TEST_F(BadInput, ObjectsTooFarApartForTheirShadowsAreSaid) {
+  Document d = scene();
+  d.root["nodes"].push_back({{"mesh", 0}, {"translation", {1e5, 0, 0}}});
+  d.root["scenes"][0]["nodes"] = {0, 1};
+  const Outcome o = render(d.text());
+  EXPECT_EQ(o.exit_code, 0);
+  EXPECT_TRUE(o.says("2 of 2 objects are smaller than a texel of the shadow maps")) << o.errors;
+  EXPECT_FALSE(render(scene().text()).says("texel"));
+}
+
 TEST_F(BadInput, AnyScaleGivesTheSamePicture) {
   const Outcome unit = render(scene().text());
   ASSERT_EQ(unit.picture.pixels.size(), 48u * 36u);
