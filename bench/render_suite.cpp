@@ -125,9 +125,10 @@ std::vector<Row> variant_rows(const JudgedPicture& judged, const Options& option
 }
 
 // A light that turns by a twentieth of a degree a frame, as the sun does in twelve seconds; to a degree and back.
+constexpr std::size_t kSlowCycle = 40;
 LightSet slow_light(const LightSet& start, std::size_t frame) {
   LightSet set = start;
-  const double step = std::abs(static_cast<double>(frame % 40) - 20);
+  const double step = std::abs(static_cast<double>(frame % kSlowCycle) - kSlowCycle / 2.0);
   const Eigen::AngleAxisf turn(static_cast<float>(step * 0.05 * kPi / 180), Vec3f::UnitY());
   for (DirectionalLight& light : set.lights) light.direction = turn * light.direction;
   return set;
@@ -141,26 +142,29 @@ Row slow_row(const JudgedPicture& judged, render::Renderer& renderer, const Opti
   });
 }
 
-// The pass that draws maps, alone: where every map is drawn, and where the light is slow.
-std::vector<Row> shadow_pass_rows(const JudgedPicture& judged, const Options& options) {
+// The pass that gives lights their maps: where every map is drawn, and where the light is slow. A whole number of its
+// cycles, once the first has been drawn.
+std::vector<Row> shadow_pass_rows(const JudgedPicture& judged) {
   render::RendererOptions measured = judged_options(kDefaultShadowSize);
   measured.measure_passes = true;
   auto renderer = renderer_of(judged.scene, measured);
   if (!renderer) return {};
   const auto turning = turning_lights(judged.light, Method::best, kDefaultLights);
   const auto row = [&](const std::string& name, const std::function<LightSet(std::size_t)>& lights) {
+    constexpr std::size_t kFrames = 2 * kSlowCycle;
     std::vector<double> shadow_ms;
     double drawn = 0;
-    Row timed = timed_frames("maps, " + judged.name, name, options, [&](std::size_t i) {
+    for (std::size_t i = 0; i <= kFrames; ++i) {
       (void)renderer->render(lights(i), judged.scene.cameras.at(0));
+      if (i == 0) continue;  // draws all
       shadow_ms.push_back(renderer->pass_times().shadow_ms);
       drawn += static_cast<double>(renderer->shadow_maps_drawn());
-    });
-    const auto frames = static_cast<double>(shadow_ms.size());
-    timed.values.emplace_back("maps_drawn_a_frame", drawn / frames);
-    timed.values.emplace_back("shadow_pass_mean_ms",
-                              std::accumulate(shadow_ms.begin(), shadow_ms.end(), 0.0) / frames);
-    return timed;
+    }
+    const double mean = std::accumulate(shadow_ms.begin(), shadow_ms.end(), 0.0) / kFrames;
+    return Row{"maps, " + judged.name,
+               name,
+               timing_of(shadow_ms),
+               {{"maps_drawn_a_frame", drawn / kFrames}, {"shadow_pass_mean_ms", mean}}};
   };
   return {row("every map", [&](std::size_t i) { return turning[(i + 1) % 2]; }),
           row("slow light", [&](std::size_t i) { return slow_light(turning[0], i); })};
@@ -189,7 +193,7 @@ std::vector<Row> picture_rows(const JudgedPicture& judged, const Options& option
   if (all) {
     rows.push_back(forward_row(judged, options));
     for (Row& row : variant_rows(judged, options)) rows.push_back(std::move(row));
-    for (Row& row : shadow_pass_rows(judged, options)) rows.push_back(std::move(row));
+    for (Row& row : shadow_pass_rows(judged)) rows.push_back(std::move(row));
     rows.push_back(lights_row(judged, options));
   }
   return rows;

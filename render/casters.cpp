@@ -276,7 +276,7 @@ void Casters::move(const Scene& scene_now, std::span<const std::size_t> moved) {
 float Casters::farthest_move(const Scene& scene_now, std::span<const std::size_t> moved) const {
   float farthest = 0;
   for (const Body& body : bodies) {
-    if (!std::binary_search(moved.begin(), moved.end(), body.primitive)) continue;
+    if (!body.casts || !std::binary_search(moved.begin(), moved.end(), body.primitive)) continue;
     for (std::size_t i = 0; i < body.vertices.size(); ++i)
       farthest = std::max(farthest,
                           (scene_now.vertices[body.vertices[i]].position - body.positions[i]).squaredNorm());

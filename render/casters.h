@@ -60,7 +60,8 @@ struct Casters {
   // Follows these primitives of the scene that this was made of; the spheres become what they would be of the scene as
   // it now stands. Triangles stay those found at time 0.
   void move(const Scene& scene, std::span<const std::size_t> moved);
-  // How far a vertex of these primitives is at most, in the scene as it now stands, from where it is here. Metres.
+  // How far a vertex of those of these primitives that cast is at most, in the scene as it now stands, from where it is
+  // here. Metres.
   [[nodiscard]] float farthest_move(const Scene& scene, std::span<const std::size_t> moved) const;
 };
 

@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "render/shaders.h"
 
 namespace lightwell::render {
 namespace {
 
-// A normal on a cell's border may be taken for the neighbour's by rounding.
-constexpr float kBorder_rad = 0.01f;
+// A normal on a cell's border may be taken for the neighbour's by rounding, of 1e-6.
+constexpr float kBorder_rad = 0.001f;
 
 struct Cell {
   Vec3f middle;
@@ -58,26 +59,31 @@ const std::array<Cell, LightLists::kCells>& cells() {
   return all;
 }
 
-// One cell's row of the table.
+// One cell's row of the table. subset_of: each weak light's
 void list(const Cell& cell, std::span<const LightRow> rows, std::size_t strong, std::size_t subsets,
-          std::span<std::uint16_t> row) {
+          std::span<const std::uint8_t> subset_of, std::span<std::uint16_t> row) {
   std::size_t count = 0, strong_count = 0;
+  std::array<std::uint16_t, LightLists::kMostSubsets>
+      next{};  // of each subset: how many, then where the next one goes
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const float* d = rows[i].to_light;
-    if (cell.middle.dot(Vec3f(d[0], d[1], d[2])) <= cell.least) continue;
+    if (cell.middle[0] * d[0] + cell.middle[1] * d[1] + cell.middle[2] * d[2] <= cell.least) continue;
     row[LightLists::kListed + count++] = static_cast<std::uint16_t>(i);
-    strong_count += i < strong ? 1 : 0;
+    if (i < strong)
+      ++strong_count;
+    else
+      ++next[subset_of[i]];
   }
   row[0] = static_cast<std::uint16_t>(count);
   row[1] = static_cast<std::uint16_t>(strong_count);
-  const auto weak = row.subspan(LightLists::kListed + strong_count, count - strong_count);
-  std::size_t grouped = 0;
+  std::uint16_t begin = 0;
   for (std::size_t subset = 0; subset < subsets; ++subset) {
-    row[2 + subset] = static_cast<std::uint16_t>(grouped);
-    for (const std::uint16_t i : weak)
-      if ((i - strong) % subsets == subset) row[LightLists::kGrouped + grouped++] = i;
+    row[2 + subset] = begin;
+    begin = static_cast<std::uint16_t>(begin + std::exchange(next[subset], begin));
   }
-  row[2 + subsets] = static_cast<std::uint16_t>(grouped);
+  row[2 + subsets] = begin;
+  for (const std::uint16_t i : row.subspan(LightLists::kListed + strong_count, count - strong_count))
+    row[LightLists::kGrouped + static_cast<std::size_t>(next[subset_of[i]]++)] = i;
 }
 
 }  // namespace
@@ -85,9 +91,12 @@ void list(const Cell& cell, std::span<const LightRow> rows, std::size_t strong, 
 std::vector<std::uint16_t> LightLists::table(std::span<const LightRow> rows, std::size_t strong,
                                              int subsets) {
   std::vector<std::uint16_t> all(static_cast<std::size_t>(kCells) * kColumns);
+  std::vector<std::uint8_t> subset_of(rows.size());
+  for (std::size_t i = strong; i < rows.size(); ++i)
+    subset_of[i] = static_cast<std::uint8_t>((i - strong) % static_cast<std::size_t>(subsets));
   std::span<std::uint16_t> left(all);
   for (const Cell& cell : cells()) {
-    list(cell, rows, strong, static_cast<std::size_t>(subsets), left.first(kColumns));
+    list(cell, rows, strong, static_cast<std::size_t>(subsets), subset_of, left.first(kColumns));
     left = left.subspan(kColumns);
   }
   return all;
@@ -111,6 +120,13 @@ std::string LightLists::facts() {
 }
 
 void LightLists::set(std::span<const LightRow> rows, std::size_t strong, int subsets) {
+  std::vector<std::array<float, 3>> directions;
+  directions.reserve(rows.size());
+  for (const LightRow& row : rows) directions.push_back({row.to_light[0], row.to_light[1], row.to_light[2]});
+  if (texture_.id() != 0 && directions == listed_ && strong == strong_ && subsets == subsets_) return;
+  listed_ = std::move(directions);
+  strong_ = strong;
+  subsets_ = subsets;
   if (texture_.id() == 0) texture_ = gl::make_texture(GL_R16UI, kColumns, kCells);
   const std::vector<std::uint16_t> texels = table(rows, strong, subsets);
   glBindTexture(GL_TEXTURE_2D, texture_.id());

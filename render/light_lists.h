@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -35,11 +36,15 @@ class LightLists {
   // For the shader that reads them.
   static std::string facts();
 
+  // Nothing to do where the lights stand.
   void set(std::span<const LightRow> rows, std::size_t strong, int subsets);
   [[nodiscard]] GLuint texture() const { return texture_.id(); }
 
  private:
   gl::Texture texture_;
+  std::vector<std::array<float, 3>> listed_;  // directions that the texture lists
+  std::size_t strong_ = 0;
+  int subsets_ = 0;
 };
 
 }  // namespace lightwell::render

@@ -110,7 +110,7 @@ Parsed parse_options(int argc, const char* const* argv) {
   app.add_option_function<std::string>(
          "--light-lists", [&](const std::string& lists) { options.light_lists = lists == "on"; },
          "on: a pixel takes the lights that its normal's region lists; off: looks at all (default); the same "
-         "picture, which may take less time on a GPU")
+         "picture")
       ->check(CLI::IsMember({"on", "off"}));
   app.add_option("--size", size, "picture, WxH")->capture_default_str();
   app.add_option("--camera", options.camera,

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <iterator>
+#include <limits>
 
 #include "render/light_subsets.h"
 #include "render/read_back.h"
@@ -39,6 +39,7 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   r.find_casters(scene, ShadowAtlas::has_large_maps(atlas_options));
   auto gbuffer = GBuffer::create(scene, r.casters_);
   if (!gbuffer) return gbuffer.error();
+  r.fitted_objects_ = r.casters_.objects;
   r.fitted_scene_ = r.casters_.scene;
   auto atlas = ShadowAtlas::create(r.casters_, r.fine_casters_, atlas_options);
   if (!atlas) return atlas.error();
@@ -75,35 +76,41 @@ void Renderer::find_casters(const Scene& scene, bool fine_ones) {
   if (fine_ones) fine_casters_ = std::move(levels.front());
 }
 
+namespace {
+
+// What maps were fitted to still holds what there is: within the padding of their depths, and not much too large for it.
+bool holds(const Sphere& fitted, const Sphere& now) {
+  constexpr float kRoom = 0.8f * (kDepthPadding - 1), kShrunk = 0.05f;
+  return (now.centre - fitted.centre).norm() + now.radius <= (1 + kRoom) * fitted.radius &&
+         now.radius >= (1 - kShrunk) * fitted.radius;
+}
+
+}  // namespace
+
 void Renderer::move(const Scene& scene, std::span<const std::size_t> moved) {
   if (moved.empty()) return;
   gbuffer_.move(scene, moved);
-  std::vector<std::size_t> all;
-  std::set_union(waiting_.begin(), waiting_.end(), moved.begin(), moved.end(), std::back_inserter(all));
-  waiting_ = std::move(all);
-  casters_off_m_ = casters_.farthest_move(scene, waiting_);
-  if (casters_off_m_ > kMovedTexels * atlas_.finest_texel_m()) move_casters(scene);
-}
-
-void Renderer::move_casters(const Scene& scene) {
-  casters_.move(scene, waiting_);
-  if (options_.texels_by_power) fine_casters_.move(scene, waiting_);
-  const bool casts = std::any_of(waiting_.begin(), waiting_.end(),
-                                 [&](std::size_t i) { return scene.primitives[i].casts_shadow; });
-  waiting_.clear();
-  casters_off_m_ = 0;
-  if (casts || casters_.scene.radius != fitted_scene_.radius ||
-      casters_.scene.centre != fitted_scene_.centre) {
-    fitted_scene_ = casters_.scene;
-    atlas_.move(casters_, fine_casters_);
+  const float farthest = casters_.farthest_move(scene, moved);
+  casters_.move(scene, moved);
+  if (options_.texels_by_power) fine_casters_.move(scene, moved);
+  if (holds(fitted_objects_, casters_.objects) && holds(fitted_scene_, casters_.scene)) {
+    for (Casters* casters : {&casters_, &fine_casters_}) {
+      casters->objects = fitted_objects_;
+      casters->scene = fitted_scene_;
+    }
+    atlas_.follow(casters_, fine_casters_, farthest);
+    return;
   }
+  fitted_objects_ = casters_.objects;
+  fitted_scene_ = casters_.scene;
+  atlas_.follow(casters_, fine_casters_, std::numeric_limits<float>::infinity());
 }
 
 Renderer::LostShadows Renderer::lost_shadows() const {
   LostShadows lost;
-  lost.texel_m = 2 * casters_.objects.radius / static_cast<float>(options_.shadow_size);
+  lost.texel_m = 2 * casters_.objects.radius / static_cast<float>(kLargestMap * options_.shadow_size);
   for (const Casters::Part& part : casters_.parts) {
-    if (casters_.is_support[part.primitive]) continue;
+    if (casters_.is_support[part.primitive] || !(part.bounds.radius > 0)) continue;
     ++lost.of;
     if (2 * part.bounds.radius < lost.texel_m) ++lost.objects;
   }
@@ -217,8 +224,8 @@ Status Renderer::render_samples(std::span<LightRow> all, const LightSet& lights,
     for (const ShadowAtlas::Block& block : *blocks) {
       const auto rows = turn.subspan(block.first, block.count);
       const bool first_block = first == 0 && block.first == 0;
-      surfaces_.set_lights(rows, all, block.page);
       time = lap(time, times_.shadow_ms);
+      surfaces_.set_lights(rows, all, block.page);
       for (int sample = first_sample; sample < end_sample; ++sample) {
         const View view =
             make_view(camera, options_.width, options_.height, sample_offset(sample, options_.samples));
@@ -279,7 +286,7 @@ void Renderer::shade_surfaces(bool shadows, Sums& sums, const SurfaceShading::Sa
   const GLuint so_far = sums.last().texture.id();
   sums.current = 1 - sums.current;
   surfaces_.shade(shadows, sample, {sums.last().framebuffer.id(), so_far, start_sum}, gbuffer_, atlas_,
-                  casters_, casters_off_m_);
+                  casters_);
 }
 
 Status Renderer::lay_over(const RadiancePicture& picture, int left, int bottom) {

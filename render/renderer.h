@@ -52,8 +52,8 @@ class Renderer {
   // bad_input: a texture too large for the driver; failed: what the driver cannot do.
   static Result<Renderer> create(const Scene& scene, const RendererOptions& options);
 
-  // Follows these primitives of the scene that it was made of, which moved (SceneMotion::moved). Their shadows follow once
-  // they are kMovedTexels of the finest map off.
+  // Follows these primitives of the scene that it was made of, which moved (SceneMotion::moved); in each map once they may
+  // be kMovedTexels off there.
   void move(const Scene& scene, std::span<const std::size_t> moved);
   Status resize(int width, int height);
   // Shown where no surface is; row 0 is the zenith. nullptr: nothing, with alpha 0.
@@ -76,7 +76,7 @@ class Renderer {
   [[nodiscard]] const Sphere& object_bounds() const {
     return casters_.objects.radius > 0 ? casters_.objects : casters_.scene;
   }
-  // What casts but is smaller than a texel of a map of shadow_size: its shadow is lost.
+  // What casts but is smaller than a texel of the largest map that a light may have: its shadow is lost.
   struct LostShadows {
     std::size_t objects = 0, of = 0;
     float texel_m = 0;
@@ -123,7 +123,6 @@ class Renderer {
   };
   [[nodiscard]] Shown shown() const;
   void find_casters(const Scene& scene, bool fine_ones);
-  void move_casters(const Scene& scene);
   Status resize(Sums& sums) const;
   Status render_samples(std::span<LightRow> rows, const LightSet& lights, const SceneCamera& camera,
                         int first_sample, int end_sample, double environment_turn_rad);
@@ -140,10 +139,8 @@ class Renderer {
   CutoutCasters cutouts_;
   ToneMapper tone_mapper_;
   Casters casters_;
-  Casters fine_casters_;              // for maps larger than shadow_size
-  Sphere fitted_scene_;               // what the maps in the atlas were drawn for
-  std::vector<std::size_t> waiting_;  // moved, but not in the maps yet: rising
-  float casters_off_m_ = 0;           // how far these are from where the maps show them
+  Casters fine_casters_;                  // for maps larger than shadow_size
+  Sphere fitted_objects_, fitted_scene_;  // what the maps in the atlas were drawn for
   SurfaceShading surfaces_;
   gl::Program background_;
   gl::Program lay_over_;  // made when it is first needed

@@ -91,8 +91,9 @@ class Session {
   // What a user should know of the picture that comes.
   void say_remarks() const {
     const Renderer::LostShadows lost = renderer_->lost_shadows();
-    if (lost.objects > 0)
-      say(lost_shadows_text(options_.scene.string(), lost.objects, lost.of, lost.texel_m));
+    if (2 * lost.objects > lost.of)
+      say(lost_shadows_text(options_.scene.string(), lost.objects, lost.of, lost.texel_m,
+                            2 * renderer_->object_bounds().radius));
   }
 
   Status run_off_screen() {
@@ -313,7 +314,9 @@ class Session {
       look_.exposure_ev100 = renderer_->exposure_ev100() - stops;
       renderer_->set_look(look_);
     }
-    if (Status s = renderer_->set_light_lists(options_.light_lists != window.switches().lists); !s) return s;
+    if (Status s = renderer_->set_light_lists(options_.light_lists != window.switches().lists_the_other_way);
+        !s)
+      return s;
     return renderer_->set_shadows(window.switches().shadows);
   }
 

@@ -40,12 +40,13 @@ std::vector<std::string> overlay_text(const ViewNumbers& n) {
   return lines;
 }
 
-std::string lost_shadows_text(const std::string& scene, std::size_t objects, std::size_t of, float texel_m) {
+std::string lost_shadows_text(const std::string& scene, std::size_t objects, std::size_t of, float texel_m,
+                              float span_m) {
   return scene +
          text(
-             ": %zu of %zu objects are smaller than a texel of the shadow maps (%.3g m), because what "
-             "casts lies so far apart: they cast no shadow that is seen; --shadow-size raises it",
-             objects, of, static_cast<double>(texel_m));
+             ": what casts spans %.3g m, and %zu of %zu objects are smaller than the finest texel of "
+             "its shadow maps, %.2g m: their shadows are lost; a larger --shadow-size makes it smaller",
+             static_cast<double>(span_m), objects, of, static_cast<double>(texel_m));
 }
 
 std::string plate_white_text(const std::string& plate, float white_cd_m2) {

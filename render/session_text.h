@@ -28,7 +28,8 @@ std::string title_text(const ViewNumbers& n);
 std::vector<std::string> overlay_text(const ViewNumbers& n);
 
 // Of objects whose shadows are lost (Renderer::lost_shadows).
-std::string lost_shadows_text(const std::string& scene, std::size_t objects, std::size_t of, float texel_m);
+std::string lost_shadows_text(const std::string& scene, std::size_t objects, std::size_t of, float texel_m,
+                              float span_m);
 std::string plate_white_text(const std::string& plate, float white_cd_m2);
 
 }  // namespace lightwell::render

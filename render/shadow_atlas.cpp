@@ -3,8 +3,6 @@
 #include "render/shadow_atlas.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <string>
 #include <tuple>
 
@@ -38,10 +36,10 @@ Result<ShadowAtlas> ShadowAtlas::create(const Casters& coarse, const Casters& fi
   return atlas;
 }
 
-void ShadowAtlas::move(const Casters& coarse, const Casters& fine) {
+void ShadowAtlas::follow(const Casters& coarse, const Casters& fine, float farthest_m) {
   coarse_.move(coarse);
   fine_.move(fine);
-  tiles_.make_stale();
+  tiles_.casters_moved(farthest_m);
 }
 
 // The textures that the tiles' pages ask for, where they are not there. Pages grow together.
@@ -57,13 +55,6 @@ Status ShadowAtlas::make_pages() {
     pages_.push_back(std::move(page));
   }
   return {};
-}
-
-float ShadowAtlas::finest_texel_m() const {
-  float finest = std::numeric_limits<float>::infinity();
-  for (const ShadowTile& tile : tiles_.tiles())
-    if (!tile.stale) finest = std::min(finest, tile.row.texel / std::max(tile.row.fit[0], tile.row.fit[1]));
-  return std::isfinite(finest) ? finest : 0;
 }
 
 int ShadowAtlas::largest() const {
@@ -158,7 +149,7 @@ void ShadowAtlas::draw_stale(const Casters& coarse, const Casters& fine) {
   for (ShadowTile& tile : tiles_.tiles()) {
     if (!tile.stale) continue;
     fit_map(tile.row, is_large(tile) ? fine : coarse, tile.side * tiles_.unit());
-    tile.stale = false;
+    tiles_.set_drawn(tile);
     stale.push_back(&tile);
   }
   drawn_ = stale.size();

@@ -18,7 +18,7 @@ struct ShadowAtlasOptions {
 };
 
 // Shadow maps of many lights as tiles of 16 bit depth textures, the pages. A map is drawn anew when its light came to another
-// place by more than kMovedTexels, when a caster moved, or when its light is to have many more or fewer texels.
+// place by more than kMovedTexels, when casters may have by as much, or when its light is to have many more or fewer texels.
 class ShadowAtlas {
  public:
   // Maps up to map_size show coarse meshes, larger ones (kLargestMap times map_size at the most) fine ones.
@@ -38,8 +38,9 @@ class ShadowAtlas {
   [[nodiscard]] int side() const { return tiles_.pages().side() * tiles_.unit(); }  // of every page, texels
   [[nodiscard]] bool empty() const { return coarse_.empty(); }
 
-  // Follows casters that moved; all maps are drawn anew.
-  void move(const Casters& coarse, const Casters& fine);
+  // Follows casters that moved by so much at most. Infinity: all maps are drawn anew, as where the spheres that they fit
+  // changed.
+  void follow(const Casters& coarse, const Casters& fine, float farthest_m);
   // Of the texels that map_size asks for, in (0, 1]; nothing where all maps are equal.
   void set_share(double share) { tiles_.set_share(share); }
   // Lights that stand together in the rows, their maps on one page, as many as a block of uniforms holds at most.
@@ -52,8 +53,8 @@ class ShadowAtlas {
   // are those it was made of. A light that moved so little that its map stands takes the map's direction.
   Result<std::vector<Block>> draw(std::span<LightRow> rows, const Casters& coarse, const Casters& fine);
   [[nodiscard]] int largest() const;  // side of the last draw()'s largest map, texels
-  // The smallest texel of the maps that stand, metres; 0 where none does.
-  [[nodiscard]] float finest_texel_m() const;
+  // Of its texels: how far casters may be from where a map shows them.
+  [[nodiscard]] float casters_off_texels() const { return tiles_.casters_off_texels(); }
   [[nodiscard]] std::size_t drawn() const { return drawn_; }  // maps, by the last draw()
   // Where the last draw() drew, and the maps' MapRows into the page's clip space: for what else is to stand in them.
   [[nodiscard]] std::span<const Block> drawn_on() const { return drawn_on_; }

@@ -39,6 +39,12 @@ float reach_of(const LightRow& drawn) {
   return kMovedTexels * drawn.texel / std::max(drawn.fit[0], drawn.fit[1]) / radius;
 }
 
+// How far casters may be from where a map shows them, its texels.
+double off_texels(const ShadowTile& tile, double way_m) {
+  const LightRow& row = tile.row;
+  return (way_m - tile.drawn_at_m) * static_cast<double>(std::max(row.fit[0], row.fit[1]) / row.texel);
+}
+
 // Tiles whose maps stand, to be found by their light's place.
 class StandingMaps {
  public:
@@ -92,8 +98,23 @@ std::size_t ShadowTiles::capacity() const {
          static_cast<std::size_t>(page_limit_);
 }
 
-void ShadowTiles::make_stale() {
-  for (ShadowTile& tile : tiles_) tile.stale = true;
+void ShadowTiles::casters_moved(float farthest_m) {
+  const bool all = !std::isfinite(farthest_m);
+  if (!all) way_m_ += static_cast<double>(farthest_m);
+  for (ShadowTile& tile : tiles_)
+    if (all || off_texels(tile, way_m_) > static_cast<double>(kMovedTexels)) tile.stale = true;
+}
+
+void ShadowTiles::set_drawn(ShadowTile& tile) const {
+  tile.stale = false;
+  tile.drawn_at_m = way_m_;
+}
+
+float ShadowTiles::casters_off_texels() const {
+  double most = 0;
+  for (const ShadowTile& tile : tiles_)
+    if (!tile.stale) most = std::max(most, off_texels(tile, way_m_));
+  return static_cast<float>(most);
 }
 
 void ShadowTiles::clear() {

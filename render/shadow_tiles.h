@@ -13,7 +13,8 @@ namespace lightwell::render {
 // Times map_size: the side of the strongest lights' maps.
 inline constexpr int kLargestMap = 4;
 
-// A light may come so far from where its map was drawn, at the edge of what casts, before it is drawn anew.
+// A light may come so far from where its map was drawn, at the edge of what casts, before it is drawn anew; and so may what
+// casts.
 inline constexpr float kMovedTexels = 0.25f;
 
 // Pages of maps: 4096² texels of 16 bits each are 32 MB. At 256² a light, 1024 lights take four.
@@ -24,7 +25,8 @@ struct ShadowTile {
   int side = 0;    // units
   int wished = 0;  // its share of the texels
   TilePages::Place place;
-  bool stale = true;  // to be drawn
+  bool stale = true;      // to be drawn
+  double drawn_at_m = 0;  // ShadowTiles' way of the casters, when it was drawn
 };
 
 // Which light's map is where: a square tile each on pages of texels, whose sides are a unit's times powers of two. A light
@@ -48,8 +50,11 @@ class ShadowTiles {
   void set_share(double share) { share_ = share; }
   // Gives each of these rows, at most capacity(), its tile. Brings them into the order of their pages.
   void assign(std::span<LightRow> rows);
-  // What casts is no longer what it was: all are stale.
-  void make_stale();
+  // What casts moved, no vertex by more than so much: maps in which that adds up to kMovedTexels are stale.
+  void casters_moved(float farthest_m);
+  void set_drawn(ShadowTile& tile) const;
+  // The most of all tiles.
+  [[nodiscard]] float casters_off_texels() const;
   void clear();
 
  private:
@@ -62,6 +67,7 @@ class ShadowTiles {
   int unit_ = 64;
   int page_limit_ = 64;  // units
   double share_ = 1;
+  double way_m_ = 0;  // of the casters, added up
   TilePages pages_;
   std::vector<ShadowTile> tiles_;
 };

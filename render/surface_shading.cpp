@@ -82,14 +82,14 @@ Result<SurfaceShading> SurfaceShading::create(const Scene& scene, bool nothing_c
   shading.models_ = shading_models(scene) + emission_fact(scene);
   shading.look_up_ = look_up(nothing_casts, options);
   shading.no_look_up_ = look_up(true, options);
-  if (Status s = shading.need(true, false); !s) return s.error();
+  if (Status s = shading.make_if_missing(true, false); !s) return s.error();
   shading.light_block_ =
       gl::make_buffer(GL_UNIFORM_BUFFER, nullptr, kMaxLightsPerBlock * sizeof(LightRow), GL_DYNAMIC_DRAW);
   shading.no_vertices_ = gl::make_vertex_array();
   return shading;
 }
 
-Status SurfaceShading::need(bool shadows, bool lists) {
+Status SurfaceShading::make_if_missing(bool shadows, bool lists) {
   Programs& there = programs_[shadows ? 1 : 0][lists ? 1 : 0];
   if (there.whole.id() != 0) return {};
   auto programs = make_programs(shadows, lists);
@@ -99,13 +99,13 @@ Status SurfaceShading::need(bool shadows, bool lists) {
 }
 
 Status SurfaceShading::make_unshadowed() {
-  return need(false, lists_);
+  return make_if_missing(false, lists_);
 }
 
 Status SurfaceShading::use_light_lists(bool on) {
   for (const bool shadows : {false, true}) {
     if (programs_[shadows ? 1 : 0][lists_ ? 1 : 0].whole.id() == 0) continue;
-    if (Status s = need(shadows, on); !s) return s;
+    if (Status s = make_if_missing(shadows, on); !s) return s;
   }
   lists_ = on;
   return {};
@@ -140,7 +140,7 @@ void SurfaceShading::set_lights(std::span<const LightRow> lights, std::span<cons
 }
 
 void SurfaceShading::shade(bool shadows, const Sample& sample, const Target& target, const GBuffer& gbuffer,
-                           const ShadowAtlas& atlas, const Casters& casters, float casters_off_m) const {
+                           const ShadowAtlas& atlas, const Casters& casters) const {
   const Programs& programs = programs_[shadows ? 1 : 0][lists_ ? 1 : 0];
   glViewport(0, 0, width_, height_);
   glEnable(GL_DEPTH_TEST);
@@ -153,7 +153,7 @@ void SurfaceShading::shade(bool shadows, const Sample& sample, const Target& tar
     glBindFramebuffer(GL_FRAMEBUFFER, subsets_target_.id());
     const GLuint nothing[4] = {0, 0, 0, 0};
     glClearBufferuiv(GL_COLOR, 0, nothing);
-    draw(programs.subsets, sample, gbuffer, atlas, casters, casters_off_m);
+    draw(programs.subsets, sample, gbuffer, atlas, casters);
   }
   glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
   const gl::Program& program = interleaved ? programs.filtered : programs.whole;
@@ -165,11 +165,11 @@ void SurfaceShading::shade(bool shadows, const Sample& sample, const Target& tar
   surfaces.set("start_sum", target.start_sum ? 1 : 0);
   surfaces.set("ambient", sample.ambient.data());
   if (interleaved) surfaces.set_texture("subset_map", 6, subsets_.id());
-  draw(program, sample, gbuffer, atlas, casters, casters_off_m);
+  draw(program, sample, gbuffer, atlas, casters);
 }
 
 void SurfaceShading::draw(const gl::Program& program, const Sample& sample, const GBuffer& gbuffer,
-                          const ShadowAtlas& atlas, const Casters& casters, float casters_off_m) const {
+                          const ShadowAtlas& atlas, const Casters& casters) const {
   const View& view = sample.view;
   const Uniforms surfaces(program);
   surfaces.set_texture("position_material_map", 1, gbuffer.position_material());
@@ -181,7 +181,7 @@ void SurfaceShading::draw(const gl::Program& program, const Sample& sample, cons
   surfaces.set("light_count", lights_);
   surfaces.set("objects_centre", casters.objects.centre.data());
   surfaces.set("scene_centre", casters.scene.centre.data());
-  surfaces.set("casters_off", casters_off_m);
+  surfaces.set("casters_off_texels", atlas.casters_off_texels());
   surfaces.set("eye", view.eye.data());
   if (strong_ < lights_) {
     const Vec3f axis = view.up.cross(view.right).normalized();

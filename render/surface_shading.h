@@ -50,9 +50,8 @@ class SurfaceShading {
     bool first_block;  // ambient light and emission are drawn with it
     float weight;
   };
-  // casters_off_m: how far casters may be from where the maps show them
   void shade(bool shadows, const Sample& sample, const Target& target, const GBuffer& gbuffer,
-             const ShadowAtlas& atlas, const Casters& casters, float casters_off_m) const;
+             const ShadowAtlas& atlas, const Casters& casters) const;
 
  private:
   struct Programs {
@@ -60,9 +59,9 @@ class SurfaceShading {
   };
   Result<Programs> make_programs(bool shadows, bool lists) const;
   // Made when they are first needed.
-  Status need(bool shadows, bool lists);
+  Status make_if_missing(bool shadows, bool lists);
   void draw(const gl::Program& program, const Sample& sample, const GBuffer& gbuffer,
-            const ShadowAtlas& atlas, const Casters& casters, float casters_off_m) const;
+            const ShadowAtlas& atlas, const Casters& casters) const;
 
   int width_ = 0;
   int height_ = 0;

@@ -64,7 +64,7 @@ std::span<const Window::Key> Window::keys() {
       {GLFW_KEY_N, "n", "numbers", [](W& w) { w.switch_overlay(&WindowSwitches::numbers); }},
       {GLFW_KEY_D, "d", "where lights are, on a dome", [](W& w) { w.switch_overlay(&WindowSwitches::dome); }},
       {GLFW_KEY_S, "s", "shadows", [](W& w) { w.switch_picture(&WindowSwitches::shadows); }},
-      {GLFW_KEY_L, "l", "light lists", [](W& w) { w.switch_picture(&WindowSwitches::lists); }},
+      {GLFW_KEY_L, "l", "light lists", [](W& w) { w.switch_picture(&WindowSwitches::lists_the_other_way); }},
       {GLFW_KEY_P, "p", "grey and mirror ball", [](W& w) { w.switch_picture(&WindowSwitches::probe); }},
       {GLFW_KEY_RIGHT_BRACKET, "] [", "brighter, darker", [](W& w) { w.expose(kThirdOfAStop); }},
       {GLFW_KEY_LEFT_BRACKET, nullptr, nullptr, [](W& w) { w.expose(-kThirdOfAStop); }},

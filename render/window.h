@@ -21,7 +21,7 @@ struct WindowSwitches {
   bool numbers = true;
   bool dome = false;
   bool shadows = true;
-  bool lists = false;  // the other way than asked for
+  bool lists_the_other_way = false;  // than asked for
   bool probe = false;
 };
 

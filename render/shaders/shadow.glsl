@@ -5,7 +5,7 @@
 // light that is small beside the map's texels takes one look-up.
 uniform highp sampler2D shadow_maps;  // depths, as they are
 uniform float atlas_side;              // texels
-uniform float casters_off;             // metres from where the maps show them, at most
+uniform float casters_off_texels;      // from where the maps show them, at most
 
 struct Maps {
   vec3 from_objects, from_scene;  // to the surface
@@ -88,7 +88,7 @@ float visibility(Maps maps, vec4 tile_spread, vec4 fit, float texel, vec3 to_lig
   float size = abs(extent);
   float blur = texel / min(fit.x, fit.y);  // of the map's larger texel side, metres
   // CASTER_SLACK, in texels along the normal, is for casters simpler than what is seen.
-  vec3 p = (extent > 0.0 ? maps.from_scene : maps.from_objects) + maps.plane * (maps.bias * (blur * CASTER_SLACK + casters_off));
+  vec3 p = (extent > 0.0 ? maps.from_scene : maps.from_objects) + maps.plane * (maps.bias * blur * (CASTER_SLACK + casters_off_texels));
   vec3 u = abs(to_light.y) < 0.9 ? vec3(to_light.z, 0.0, -to_light.x) : vec3(0.0, -to_light.z, to_light.y);
   u *= inversesqrt(dot(u, u));
   vec3 v = cross(to_light, u);

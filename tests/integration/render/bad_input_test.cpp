@@ -132,8 +132,14 @@ TEST_F(BadInput, ObjectsTooFarApartForTheirShadowsAreSaid) {
   d.root["scenes"][0]["nodes"] = {0, 1};
   const Outcome o = render(d.text());
   EXPECT_EQ(o.exit_code, 0);
-  EXPECT_TRUE(o.says("2 of 2 objects are smaller than a texel of the shadow maps")) << o.errors;
+  EXPECT_TRUE(o.says("2 of 2 objects are smaller than the finest texel")) << o.errors;
   EXPECT_FALSE(render(scene().text()).says("texel"));
+  // A large thing with small parts has shadows that are seen.
+  Document parts = scene();
+  parts.root["nodes"][0]["scale"] = {1000, 1000, 1000};
+  parts.root["nodes"].push_back({{"mesh", 0}, {"translation", {3, 0, 0}}});
+  parts.root["scenes"][0]["nodes"] = {0, 1};
+  EXPECT_FALSE(render(parts.text()).says("texel"));
 }
 
 TEST_F(BadInput, AnyScaleGivesTheSamePicture) {
