@@ -248,8 +248,8 @@ size_t sync_pack(const sync_message* message, uint8_t* payload) {
   for (size_t i = 0; i < list.count; ++i) {
     const size_t size = kind_size(list.fields[i].kind);
     const uint8_t* from = (const uint8_t*)message + list.fields[i].offset;
-    for (size_t k = 0; k < list.fields[i].count; ++k, from += size) {
-      const uint64_t value = load(from, size);
+    for (size_t k = 0; k < list.fields[i].count; ++k) {
+      const uint64_t value = load(from + k * size, size);
       for (size_t byte = 0; byte < size; ++byte) payload[at++] = (uint8_t)(value >> (8u * byte));
     }
   }
@@ -263,10 +263,10 @@ bool sync_unpack(uint8_t type, const uint8_t* payload, size_t size, sync_message
   for (size_t i = 0; i < list.count; ++i) {
     const size_t width = kind_size(list.fields[i].kind);
     uint8_t* to = (uint8_t*)message + list.fields[i].offset;
-    for (size_t k = 0; k < list.fields[i].count; ++k, to += width) {
+    for (size_t k = 0; k < list.fields[i].count; ++k) {
       uint64_t value = 0;
       for (size_t byte = 0; byte < width; ++byte) value |= (uint64_t)*payload++ << (8u * byte);
-      store(value, to, width);
+      store(value, to + k * width, width);
     }
   }
   return true;

@@ -227,7 +227,8 @@ void board_imu(board* self, const float acceleration[3], const float rate[3], ui
   const float dt = (float)(tick - self->last_imu) / (float)self->facts->tick_hz;
   self->last_imu = tick;
   gravity_sample(&self->up, acceleration, rate, dt < 0.1f ? dt : 0.1f);
-  if (!self->up.started || ++self->imu_skipped < (uint32_t)kImuEvery) return;
+  ++self->imu_skipped;
+  if (!self->up.started || self->imu_skipped < (uint32_t)kImuEvery) return;
   self->imu_skipped = 0;
   sync_message message = {.type = SYNC_IMU,
                           .imu = {.t_board_ns = board_ns(self, tick),

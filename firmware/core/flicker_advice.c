@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/flicker_advice.h"
 
+#include <stdint.h>
+
 #include "firmware/core/real.h"
 
 static const float kGoodEnough = 0.0005f;
@@ -11,6 +13,8 @@ static const float kRateCost = 0.02f;
 static const float kExposureCost = 0.002f;
 static const float kLeastAlias = 0.05f;  // Hz: mains wander; nothing is frozen for good
 static const float kMostOfPeriod = 0.9f;
+// Neighbours looked at, so that a slow rate under a fast lamp costs no more time than any other: 1 ms of a Cortex-M4.
+enum { kRipples = 5, kDivisors = 4 };
 
 float flicker_beat(const flicker_result* light, float rate_hz, float exposure_s) {
   float beat = 0.0f;
@@ -53,9 +57,13 @@ static void consider(search* self, float rate_hz, float exposure_s) {
 static void consider_exposures(search* self, float rate_hz) {
   const float longest = kMostOfPeriod / rate_hz;
   consider(self, rate_hz, self->wanted_exposure < longest ? self->wanted_exposure : longest);
-  for (unsigned i = 0; i < self->light->tones; ++i)
-    for (float ripples = 1.0f; ripples / self->light->tone[i].hz <= longest; ripples += 1.0f)
-      consider(self, rate_hz, ripples / self->light->tone[i].hz);
+  for (unsigned i = 0; i < self->light->tones; ++i) {
+    const float hz = self->light->tone[i].hz;
+    const float wanted = hz * (self->wanted_exposure < longest ? self->wanted_exposure : longest);
+    const int32_t nearest = (int32_t)(wanted + 0.5f);
+    for (int32_t ripples = nearest - kRipples; ripples <= nearest + kRipples; ++ripples)
+      if (ripples > 0) consider(self, rate_hz, (float)ripples / hz);
+  }
 }
 
 flicker_advice flicker_advise(const flicker_result* light, float rate_hz, float exposure_s) {
@@ -64,8 +72,11 @@ flicker_advice flicker_advise(const flicker_result* light, float rate_hz, float 
   consider_exposures(&self, rate_hz);
   for (unsigned i = 0; i < light->tones; ++i) {
     const float hz = light->tone[i].hz;
-    for (float divisor = (float)(int)(hz / rate_hz); hz >= 0.5f * rate_hz * divisor; divisor += 1.0f)
-      if (divisor > 0.0f && hz <= rate_hz * divisor) consider_exposures(&self, hz / divisor);
+    const int32_t first = (int32_t)(hz / rate_hz);
+    for (int32_t divisor = first; divisor <= first + kDivisors; ++divisor) {
+      const float slower = divisor > 0 ? hz / (float)divisor : 0.0f;
+      if (slower <= rate_hz && slower >= 0.5f * rate_hz) consider_exposures(&self, slower);
+    }
   }
   return self.best;
 }

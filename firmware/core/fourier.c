@@ -7,7 +7,8 @@
 enum { kHalf = FOURIER_SIZE / 2 };
 
 static void swap_reversed(float* z) {
-  for (unsigned i = 0, reversed = 0; i < (unsigned)kHalf; ++i) {
+  unsigned reversed = 0;
+  for (unsigned i = 0; i < (unsigned)kHalf; ++i) {
     if (i < reversed) {
       for (unsigned part = 0; part < 2u; ++part) {
         const float held = z[2u * i + part];

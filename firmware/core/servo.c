@@ -108,7 +108,8 @@ static bool extend(const servo* self, servo_track* track, uint64_t tick) {
 static void consider(servo* self, uint64_t tick) {
   servo_track* track = &self->candidate;
   if (track->seen == 0u || !extend(self, track, tick)) {
-    if (track->seen < 2u || ++track->strikes >= (uint32_t)kStrikes) begin(self, track, tick);
+    ++track->strikes;
+    if (track->seen < 2u || track->strikes >= (uint32_t)kStrikes) begin(self, track, tick);
     return;
   }
   track->strikes = 0;

@@ -18,8 +18,10 @@ void hang(void) {
 // Runs before the floating point unit is switched on: nothing here may use it.
 void reset_handler(void) {
   const uint32_t* from = &image_data_load;
-  for (uint32_t* to = &image_data_start; to < &image_data_end;) *to++ = *from++;
-  for (uint32_t* to = &image_bss_start; to < &image_bss_end;) *to++ = 0;
+  uint32_t* to = &image_data_start;
+  while (to < &image_data_end) *to++ = *from++;
+  to = &image_bss_start;
+  while (to < &image_bss_end) *to++ = 0;
   (void)main();
   hang();
 }

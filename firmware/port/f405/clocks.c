@@ -9,7 +9,7 @@ enum { kPatience = 100000, kHsiHz = 16000000, kTimerHz = 84000000 };
 enum { kHseOn = 1 << 16, kHseReady = 1 << 17, kPllOn = 1 << 24, kPllReady = 1 << 25 };
 enum { kPllHse = 1 << 22, kUsePll = 2, kWaitStates5 = 5, kCaches = 7 << 8 };
 
-static bool wait_for(reg* from, uint32_t bit) {
+static bool wait_for(const reg* from, uint32_t bit) {
   for (uint32_t i = 0; i < (uint32_t)kPatience; ++i)
     if ((*from & bit) != 0u) return true;
   return false;
