@@ -27,6 +27,8 @@ std::string alarm_for(const DaemonStatus& status) {
   if (!status.calibration_verdict.empty()) return "Calibration: " + status.calibration_verdict;
   if (status.source_state == SourceState::streaming && status.published > 0 && status.frame_age_ms > kStaleMs)
     return fmt::format("Light is {:.1f} s old", status.frame_age_ms / 1000);
+  if (status.board.state == BoardState::no_device || status.board.state == BoardState::wrong_firmware)
+    return fmt::format("Sync board: {} ({})", name(status.board.state), status.board.description);
   if (!status.recording.error.empty()) return "Recording stopped: " + status.recording.error;
   if (status.recording.active && status.recording.dropped > 0)
     return fmt::format("Recording has lost {} frames: the disk is too slow", status.recording.dropped);

@@ -2,8 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/assembly.h"
 
+#include <algorithm>
+#include <charconv>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
 
 #include "daemon/capture/recording_source.h"
 #include "daemon/capture/simulated_source.h"
@@ -18,6 +23,24 @@ namespace {
 std::optional<std::string> after_kind(const std::string& address, const std::string& kind) {
   if (address.compare(0, kind.size() + 1, kind + ":") != 0) return std::nullopt;
   return address.substr(kind.size() + 1);
+}
+
+// "N" or "N/D": a whole number, or a ratio of two. Limits are the board's to say.
+Result<std::pair<std::uint32_t, std::uint32_t>> rate_of(const std::string& key, const std::string& text) {
+  const auto whole = [](std::string_view digits) -> std::optional<std::uint32_t> {
+    std::uint32_t value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc() || end != digits.data() + digits.size() || value == 0) return std::nullopt;
+    return value;
+  };
+  const std::size_t slash = text.find('/');
+  const auto numerator = whole(std::string_view(text).substr(0, slash));
+  const auto denominator = slash == std::string::npos ? std::optional<std::uint32_t>(1)
+                                                      : whole(std::string_view(text).substr(slash + 1));
+  if (numerator && denominator) return std::pair(*numerator, *denominator);
+  return Error{
+      ErrorKind::usage,
+      key + " = \"" + text + "\"; allowed: N or N/D a second, whole numbers from 1, as 25 or 30000/1001"};
 }
 
 Error no_calibration(const std::string& source) {
@@ -73,6 +96,31 @@ std::optional<FewLightsOptions> fit_options(const Configuration& configuration) 
   options.lights = configuration.fit.lights;
   if (configuration.fit.max_error > 0) options.max_error = configuration.fit.max_error;
   return options;
+}
+
+Result<std::optional<BoardOptions>> board_options(const Configuration& configuration) {
+  const auto& given = configuration.board;
+  if (given.address.empty()) return std::optional<BoardOptions>();
+  const auto address = parse_sync_address(given.address);
+  if (!address) return address.error();
+  BoardOptions options;
+  options.address = *address;
+  const auto reference_rate = rate_of("board.reference_rate", given.reference_rate);
+  if (!reference_rate) return reference_rate.error();
+  if (given.trigger_rate.empty()) return std::optional(options);
+  const auto rate = rate_of("board.trigger_rate", given.trigger_rate);
+  if (!rate) return rate.error();
+  BoardOptions::Trigger trigger;
+  std::tie(trigger.rate_numerator, trigger.rate_denominator) = *rate;
+  std::tie(trigger.reference_numerator, trigger.reference_denominator) = *reference_rate;
+  trigger.pulse_ns = static_cast<std::uint32_t>(given.pulse_us * 1e3);
+  // More than the board takes is cut: what is longer than a second is no exposure of a light that moves.
+  trigger.exposure_ns = static_cast<std::uint32_t>(std::min(configuration.source.exposure_us * 1e3, 1e9));
+  trigger.reference = given.reference == "pulse"      ? SYNC_REFERENCE_PULSE
+                      : given.reference == "timecode" ? SYNC_REFERENCE_TIMECODE
+                                                      : SYNC_REFERENCE_NONE;
+  options.trigger = trigger;
+  return std::optional(options);
 }
 
 Result<Calibration> choose_calibration(const Configuration& configuration) {

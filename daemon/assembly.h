@@ -8,6 +8,7 @@
 #include "daemon/capture/capture_source.h"
 #include "daemon/configuration.h"
 #include "daemon/pipeline/frame_path.h"
+#include "daemon/sync/sync_board.h"
 #include "lighting/calibration.h"
 #include "lighting/fit/few_lights.h"
 #include "lighting/result.h"
@@ -22,6 +23,9 @@ FramePathOptions frame_path_options(const Configuration& configuration);
 
 // Empty where nothing is to be fitted.
 std::optional<FewLightsOptions> fit_options(const Configuration& configuration);
+
+// Empty where no board is configured. usage: an address or a rate that is none, naming key, value and what is allowed.
+Result<std::optional<BoardOptions>> board_options(const Configuration& configuration);
 
 // The configured folder's calibration; without one, the recording's own or the simulation's own; else usage,
 // saying what to do. bad_input as the readers of the files say.

@@ -67,6 +67,14 @@ struct Configuration {
     std::string codec = "raw";
     bool operator==(const Record&) const = default;
   } record;
+  struct Board {
+    std::string address;
+    std::string trigger_rate;
+    std::string reference = "none";
+    std::string reference_rate = "1";
+    double pulse_us = 0;
+    bool operator==(const Board&) const = default;
+  } board;
   struct Http {
     std::string listen = "127.0.0.1:8650";
     bool operator==(const Http&) const = default;

@@ -16,6 +16,9 @@
 #include "daemon/pipeline/snapshot.h"
 #include "daemon/publish/publisher.h"
 #include "daemon/record/recorder.h"
+#include "daemon/record/take_name.h"
+#include "daemon/sync/exposure_stamper.h"
+#include "daemon/sync/sync_board.h"
 #include "daemon/web/listen_address.h"
 #include "daemon/web/server.h"
 #include "interface/calibration_io.h"
@@ -38,6 +41,7 @@ std::string needs_restart(const Configuration& now, const Configuration& wanted)
   if (now.dds != wanted.dds) return "[dds]";
   if (now.probe != wanted.probe) return "[probe]";
   if (now.record != wanted.record) return "[record]";
+  if (now.board != wanted.board) return "[board]";
   return {};
 }
 
@@ -50,7 +54,7 @@ struct Daemon::Parts {
         snapshots(FramePath::prototype(frame_path_options(given))),
         calibration(std::move(calibration_given)),
         recorder(given.record.directory),
-        pipeline(&recorder) {}
+        pipeline(&recorder, &stamper) {}
 
   std::int64_t start_mono_ns = mono_now_ns();
   mutable std::mutex mutex;  // guards configuration and calibration
@@ -58,11 +62,14 @@ struct Daemon::Parts {
   SnapshotChannel snapshots;
   Calibration calibration;
   Recorder recorder;
+  StrobeRing strobes;
+  ExposureStamper stamper{strobes};
   Pipeline pipeline;
   std::unique_ptr<Publisher> publisher;
   std::unique_ptr<FitWorker> fits;
   std::unique_ptr<WebServer> web;
-  std::string logged_mismatch;  // log_changes' own
+  std::unique_ptr<SyncBoard> board;  // null: none is configured; its button asks the others
+  std::string logged_mismatch;       // log_changes' own
 };
 
 Status Daemon::check(const Configuration& configuration) {
@@ -73,6 +80,7 @@ Status Daemon::check(const Configuration& configuration) {
     if (!status) return status;
   const auto source = make_capture_source(configuration.source.address, capture_options(configuration));
   if (!source) return source.error();
+  if (const auto board = board_options(configuration); !board) return board.error();
   const auto calibration = choose_calibration(configuration);
   if (!calibration) return calibration.error();
   return check_frames_fit(configuration, *calibration);
@@ -81,6 +89,8 @@ Status Daemon::check(const Configuration& configuration) {
 Result<std::unique_ptr<Daemon>> Daemon::start(const Configuration& configuration) {
   auto source = make_capture_source(configuration.source.address, capture_options(configuration));
   if (!source) return source.error();
+  auto board = board_options(configuration);
+  if (!board) return board.error();
   auto calibration = choose_calibration(configuration);
   if (!calibration) return calibration.error();
 
@@ -103,6 +113,10 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Configuration& configuration
       std::move(*source),
       std::make_shared<FramePath>(p.calibration, frame_path_options(configuration), p.snapshots));
   if (!started) return started.error();
+  if (*board) {
+    (*board)->on_button = [d = daemon.get()](sync_press press) { d->take_button(press); };
+    p.board = std::make_unique<SyncBoard>(std::move(**board), p.strobes);
+  }
   return daemon;
 }
 
@@ -139,8 +153,26 @@ void Daemon::close_take() {
   if (const Status closed = parts_->recorder.stop(); !closed) spdlog::error("{}", closed.error().message);
 }
 
+// A short press begins a take or ends it.
+void Daemon::take_button(sync_press press) {
+  if (press != SYNC_BUTTON_SHORT) return;
+  const Status done =
+      parts_->recorder.stats().active ? stop_recording() : start_recording(take_name_at(utc_now_ns()));
+  if (!done) spdlog::error("record button: {}", done.error().message);
+}
+
+void Daemon::tell_board() {
+  if (!parts_->board) return;
+  const DaemonStatus now = status();
+  const sync_host idle = now.source_state == SourceState::streaming ? SYNC_HOST_LIVE : SYNC_HOST_IDLE;
+  parts_->board->set_host_state(now.recording.active ? SYNC_HOST_RECORDING
+                                : !now.alarm.empty() ? SYNC_HOST_TROUBLE
+                                                     : idle);
+}
+
 void Daemon::stop() {
-  close_take();  // first: nothing else can lose anything
+  close_take();           // first: nothing else can lose anything
+  parts_->board.reset();  // its button may ask for a take
   parts_->pipeline.stop();
   parts_->snapshots.close();
   parts_->web.reset();
@@ -185,6 +217,11 @@ DaemonStatus Daemon::status() const {
   status.recording = {take.active, take.file, take.frames, take.dropped, take.bytes, take.error};
   std::error_code ignored;
   status.recording.directory = std::filesystem::absolute(record_directory, ignored).string();
+  if (parts_->board) {
+    status.board = parts_->board->view();
+    status.board.stamped = parts_->stamper.stamped();
+    status.board.left = parts_->stamper.left();
+  }
   status.alarm = alarm_for(status);
   return status;
 }

@@ -8,6 +8,7 @@
 
 #include "daemon/configuration.h"
 #include "daemon/pipeline/status.h"
+#include "interface/sync_protocol.h"
 #include "lighting/calibration.h"
 #include "lighting/result.h"
 
@@ -42,10 +43,13 @@ class Daemon final : public DaemonControl {
   // Logs that the calibration no longer fits the frames, or fits again: once each. Looked at from one thread, now and
   // then, so that the frame path never waits for a log.
   void log_changes();
+  // Shows on the sync board's LED how the daemon does; looked at as log_changes is.
+  void tell_board();
   // A recording as source that is not looped has come to its end.
   [[nodiscard]] bool ended() const;
 
  private:
+  void take_button(sync_press press);
   struct Parts;
   explicit Daemon(std::unique_ptr<Parts> parts);
   std::unique_ptr<Parts> parts_;

@@ -115,6 +115,7 @@ void serve(Daemon& daemon, const Arguments& arguments, int signals) {
       reload(daemon, arguments);
     }
     daemon.log_changes();
+    daemon.tell_board();
     const std::uint64_t heartbeat = daemon.heartbeat();
     if (watched && heartbeat != last_heartbeat) sd_notify(0, "WATCHDOG=1");
     last_heartbeat = heartbeat;

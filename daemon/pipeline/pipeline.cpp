@@ -32,7 +32,7 @@ Status check_exposure(const FrameInfo& info) {
 
 }  // namespace
 
-Pipeline::Pipeline(FrameSink* sink) : sink_(sink) {}
+Pipeline::Pipeline(FrameSink* sink, FrameStamper* stamper) : sink_(sink), stamper_(stamper) {}
 
 Pipeline::~Pipeline() {
   stop();
@@ -152,8 +152,10 @@ void Pipeline::handle(const FrameLease& frame) {
     dropped_.fetch_add(1, std::memory_order_relaxed);
     return;
   }
-  path_->process(frame.info(), frame.bytes());
-  if (sink_ != nullptr) sink_->offer(frame.info(), frame.bytes());
+  FrameInfo info = frame.info();
+  if (stamper_ != nullptr) stamper_->stamp(info);
+  path_->process(info, frame.bytes());
+  if (sink_ != nullptr) sink_->offer(info, frame.bytes());
 }
 
 // Published frames over windows of two seconds.

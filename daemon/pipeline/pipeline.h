@@ -24,12 +24,20 @@ class FrameSink {
   virtual void offer(const FrameInfo& info, std::span<const std::byte> codes) noexcept = 0;
 };
 
+// Knows better when a frame was exposed than its camera. Must not block or allocate.
+class FrameStamper {
+ public:
+  virtual ~FrameStamper() = default;
+  // Sets the frame's times where it knows them; false where not.
+  virtual bool stamp(FrameInfo& info) noexcept = 0;
+};
+
 // The frame path's thread: takes the source's freshest frame, makes its lights, offers it to the sink.
 // Everything else in the daemon reads what it publishes; nothing else can make it wait.
 class Pipeline {
  public:
-  // sink may be null, and outlives the pipeline.
-  explicit Pipeline(FrameSink* sink);
+  // sink and stamper may be null, and outlive the pipeline.
+  explicit Pipeline(FrameSink* sink, FrameStamper* stamper = nullptr);
   ~Pipeline();
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
@@ -65,6 +73,7 @@ class Pipeline {
   void measure_rate(std::int64_t now_ns) noexcept;
 
   FrameSink* sink_;
+  FrameStamper* stamper_;
   RetiredSources retired_;
   std::thread thread_;
   std::atomic<bool> stopping_{false};

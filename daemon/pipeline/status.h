@@ -8,6 +8,7 @@
 
 #include "daemon/capture/capture_source.h"
 #include "daemon/pipeline/fit_worker.h"
+#include "daemon/sync/board_view.h"
 
 namespace lightwell {
 
@@ -39,6 +40,7 @@ struct DaemonStatus {
     std::string error;        // why the last recording stopped by itself, else empty
     std::string directory{};  // absolute, where takes are written
   } recording;
+  BoardView board;    // the sync board
   std::string alarm;  // the worst thing that is wrong, in words; empty when nothing is
 };
 

@@ -3,6 +3,7 @@
 #include "daemon/record/take_name.h"
 
 #include <algorithm>
+#include <ctime>
 
 namespace lightwell {
 namespace {
@@ -13,6 +14,14 @@ bool is_plain(char c) {
 }
 
 }  // namespace
+
+std::string take_name_at(std::int64_t utc_ns) {
+  const auto seconds = static_cast<std::time_t>(utc_ns / 1'000'000'000);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  char text[64];
+  return {text, std::strftime(text, sizeof text, "take %Y-%m-%d %H.%M.%S.mkv", &utc)};
+}
 
 Status check_take_name(const std::string& file) {
   constexpr std::size_t kLongest = 128;

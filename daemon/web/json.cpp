@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/publish/messages.h"
+#include "daemon/web/board_json.h"
 #include "interface/fit_json.h"
 #include "interface/light_set_io.h"
 
@@ -93,6 +94,7 @@ std::string status_json(const DaemonStatus& status) {
         {"dropped", recording.dropped},
         {"bytes", recording.bytes},
         {"error", recording.error}}},
+      {"board", board_json(status.board)},
       {"alarm", status.alarm},
   });
 }

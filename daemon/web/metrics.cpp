@@ -100,6 +100,29 @@ void add_light(Page& page, const Snapshot& snapshot) {
                 std::string("channel=\"") + "rgb"[c] + "\"");
 }
 
+// What the board has not said is not there.
+void add_board(Page& page, const BoardView& board) {
+  if (board.state == BoardState::off) return;
+  page.gauge("lightwell_board_connected", board.state == BoardState::connected ? 1 : 0,
+             "1 while the sync board answers.");
+  page.counter("lightwell_board_reconnects_total", board.reconnects, "Times the board was found again.");
+  page.counter("lightwell_board_stamped_frames_total", board.stamped,
+               "Frames whose exposure the strobe told.");
+  page.counter("lightwell_board_unstamped_frames_total", board.left,
+               "Frames that no strobe could be given to.");
+  if (board.status) {
+    page.gauge("lightwell_board_locked", board.status->lock == SYNC_LOCK_LOCKED ? 1 : 0,
+               "1 while triggers follow the reference.");
+    page.gauge("lightwell_board_phase_rms_seconds", board.status->phase_rms_ns * 1e-9,
+               "Of the reference's last edges against their prediction.");
+  }
+  if (board.photodiode)
+    page.gauge("lightwell_board_illuminance_lux", board.photodiode->level_mlx * 1e-3,
+               "Mean of the photodiode.");
+  if (const auto& t = board.temperature[SYNC_SENSOR_BOARD])
+    page.gauge("lightwell_board_temperature_celsius", t->temperature_mc * 1e-3, "Of the board.");
+}
+
 }  // namespace
 
 std::string metrics_text(const DaemonStatus& status, const Snapshot* snapshot, const WebCounters& web) {
@@ -110,6 +133,7 @@ std::string metrics_text(const DaemonStatus& status, const Snapshot* snapshot, c
   page.gauge("lightwell_uptime_seconds", status.uptime_s, "Since the daemon started.");
   add_capture(page, status);
   add_pipeline(page, status);
+  add_board(page, status.board);
   if (snapshot != nullptr) add_light(page, *snapshot);
   page.gauge("lightwell_alarm", status.alarm.empty() ? 0 : 1, "1 while something is wrong.");
   page.gauge("lightwell_recording", status.recording.active ? 1 : 0, "1 while a take is recorded.");

@@ -158,8 +158,23 @@ function showStatus(status) {
   put('lost-note', `of ${number(status.capture.received)}; ${number(status.capture.skipped)} passed over`);
   put('calibration', (status.calibration_id || 'none') +
       (status.calibration_verdict ? ` – ${status.calibration_verdict}` : ''));
+  showBoard(status.board);
   put('uptime', duration(status.uptime_s));
   showRecording(status.recording);
+}
+
+// Nothing where no board is configured.
+function showBoard(board) {
+  $('board-fact').hidden = !board || board.state === 'off';
+  if (!board || board.state === 'off') return;
+  const parts = [board.state === 'connected' ? 'connected' : `${board.state}: ${board.description}`];
+  if (board.trigger && board.trigger.lock !== 'free') parts.push(`triggers ${board.trigger.lock}`);
+  if (board.timecode) parts.push(board.timecode);
+  const lamp = board.flicker && board.flicker.lamps[0];
+  if (lamp) parts.push(`flicker ${number(lamp.frequency_hz, 1)} Hz, ${number(100 * lamp.depth, 1)} %`);
+  if (board.temperature_c !== null) parts.push(`${number(board.temperature_c, 0)} °C`);
+  if (board.refused) parts.push(`refused: ${board.refused}`);
+  put('board', parts.join(' · '));
 }
 
 function duration(seconds) {

@@ -1,0 +1,255 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/sync/sync_board.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+#include "daemon/clock.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::int64_t kPingNs =
+    25'000'000;  // BoardClockMap: a few µs with a millisecond of scheduling noise
+constexpr std::int64_t kStateNs = 500'000'000;     // LED
+constexpr std::int64_t kHelloNs = 500'000'000;     // until it is answered
+constexpr std::int64_t kSilentNs = 1'000'000'000;  // 40 pings unanswered
+constexpr auto kRetry = std::chrono::milliseconds(300);
+constexpr auto kTurn = std::chrono::milliseconds(10);
+
+sync_message message_of(sync_type type) {
+  sync_message message{};
+  message.type = static_cast<std::uint8_t>(type);
+  return message;
+}
+
+std::string hello_text(const sync_hello& hello) {
+  return fmt::format("firmware {}.{}.{}, serial {:08x}{:08x}{:08x}", hello.version[0], hello.version[1],
+                     hello.version[2], hello.serial[0], hello.serial[1], hello.serial[2]);
+}
+
+}  // namespace
+
+SyncBoard::SyncBoard(BoardOptions options, StrobeRing& strobes)
+    : options_(std::move(options)), strobes_(strobes) {
+  if (!options_.open) options_.open = [address = options_.address] { return open_sync_link(address); };
+  set_state(BoardState::no_device, "not looked for yet");
+  thread_ = std::thread([this] { run(); });
+}
+
+SyncBoard::~SyncBoard() {
+  stopping_ = true;
+  thread_.join();
+}
+
+BoardView SyncBoard::view() const {
+  const std::scoped_lock lock(mutex_);
+  return view_;
+}
+
+// What another board, or none, does not say any more is forgotten.
+void SyncBoard::set_state(BoardState state, const std::string& description) {
+  const std::scoped_lock lock(mutex_);
+  const std::uint64_t reconnects = view_.reconnects, lost = view_.lost_frames;
+  if (state != BoardState::connected) view_ = {};
+  view_.state = state;
+  view_.description = description;
+  view_.reconnects = reconnects;
+  view_.lost_frames = lost;
+}
+
+void SyncBoard::run() {
+  pthread_setname_np(pthread_self(), "sync-board");
+  while (!stopping_) {
+    auto link = options_.open();
+    Status ended = link ? converse(**link) : Status(link.error());
+    agreed_ = false;
+    // What a board of another version said stays to be read.
+    if (!ended && view().state != BoardState::wrong_firmware)
+      set_state(BoardState::no_device, ended.error().message);
+    for (auto slept = std::chrono::milliseconds(0); slept < kRetry && !stopping_; slept += kTurn)
+      std::this_thread::sleep_for(kTurn);
+  }
+}
+
+Status SyncBoard::converse(SyncLink& link) {
+  frame_receiver_init(&receiver_);
+  clock_.reset();
+  last_sequence_.reset();
+  to_configure_.reset();
+  asked_ = false;
+  last_board_ns_ = 0;
+  next_hello_ns_ = next_ping_ns_ = next_state_ns_ = 0;
+  last_heard_ns_ = mono_now_ns();
+  std::array<std::uint8_t, 1024> bytes{};
+  while (!stopping_) {
+    if (Status sent = send_due(link); !sent) return sent;
+    const auto size = link.read(bytes, kTurn);
+    if (!size) return size.error();
+    const std::int64_t received_ns = mono_now_ns();
+    for (std::size_t i = 0; i < *size; ++i) {
+      frame_view frame{};
+      if (!frame_receive(&receiver_, bytes[i], &frame)) continue;
+      last_heard_ns_ = received_ns;
+      sync_message message{};
+      if (frame_message(&frame, &message)) {
+        if (last_sequence_) {
+          const auto gap = static_cast<std::uint16_t>(frame.sequence - *last_sequence_ - 1);
+          const std::scoped_lock lock(mutex_);
+          view_.lost_frames += gap;
+        }
+        last_sequence_ = frame.sequence;
+        take(message, received_ns);
+      } else if (frame.version != SYNC_PROTOCOL_VERSION) {
+        set_state(
+            BoardState::wrong_firmware,
+            fmt::format("the board speaks version {} of the protocol, this program {}; update the board",
+                        frame.version, SYNC_PROTOCOL_VERSION));
+      }
+    }
+    if (to_configure_) {
+      const sync_configuration current = *std::exchange(to_configure_, std::nullopt);
+      if (Status sent = configure(link, current); !sent) return sent;
+    }
+    if (received_ns - last_heard_ns_ > kSilentNs)
+      return Error{ErrorKind::failed, "the board is silent; is it powered, is it a Lightwell board?"};
+  }
+  return {};
+}
+
+Status SyncBoard::send(SyncLink& link, const sync_message& message) {
+  std::array<std::uint8_t, SYNC_MAX_WIRE> wire{};
+  const std::size_t size = frame_encode_message(&message, sequence_++, wire.data());
+  return link.write(std::span(wire).first(size));
+}
+
+Status SyncBoard::send_due(SyncLink& link) {
+  const std::int64_t now_ns = mono_now_ns();
+  if (!agreed_ && now_ns >= next_hello_ns_) {
+    next_hello_ns_ = now_ns + kHelloNs;
+    if (Status sent = send(link, message_of(SYNC_HELLO_REQUEST)); !sent) return sent;
+  }
+  if (!agreed_) return {};
+  if (!std::exchange(asked_, true))
+    if (Status sent = send(link, message_of(SYNC_CONFIGURATION_REQUEST)); !sent) return sent;
+  if (now_ns >= next_state_ns_) {
+    next_state_ns_ = now_ns + kStateNs;
+    sync_message message = message_of(SYNC_HOST_STATE);
+    message.host_state.state = static_cast<std::uint8_t>(host_state_.load());
+    if (Status sent = send(link, message); !sent) return sent;
+  }
+  if (now_ns >= next_ping_ns_) {
+    next_ping_ns_ = now_ns + kPingNs;
+    sync_message message = message_of(SYNC_PING);
+    message.ping.t_host_ns = static_cast<std::uint64_t>(mono_now_ns());  // as late as can be
+    if (Status sent = send(link, message); !sent) return sent;
+  }
+  return {};
+}
+
+// The board's settings with what was asked for in them.
+Status SyncBoard::configure(SyncLink& link, const sync_configuration& current) {
+  const BoardOptions::Trigger& wanted = *options_.trigger;
+  sync_message message = message_of(SYNC_CONFIGURE);
+  sync_configuration& c = message.configuration;
+  c = current;
+  c.trigger_on = 1;
+  c.rate_numerator = wanted.rate_numerator;
+  c.rate_denominator = wanted.rate_denominator;
+  if (wanted.pulse_ns > 0) c.pulse_ns = wanted.pulse_ns;
+  if (wanted.exposure_ns > 0) c.exposure_ns = wanted.exposure_ns;
+  c.reference = static_cast<std::uint8_t>(wanted.reference);
+  c.reference_numerator = wanted.reference_numerator;
+  c.reference_denominator = wanted.reference_denominator;
+  c.store = 0;  // the host says it at every start; flash wears
+  return send(link, message);
+}
+
+// The board has started again: it may be another firmware, and has forgotten what it was told.
+void SyncBoard::begin_anew() {
+  agreed_ = asked_ = false;
+  next_hello_ns_ = 0;
+  clock_.reset();
+  last_sequence_.reset();
+  const std::scoped_lock lock(mutex_);
+  view_.configuration.reset();
+}
+
+void SyncBoard::take_strobe(const sync_strobe& strobe) {
+  if ((strobe.flags & SYNC_STROBE_PAIRED) == 0 || (strobe.flags & SYNC_STROBE_NO_FALL) != 0) return;
+  const auto begin = clock_.mono_ns(static_cast<std::int64_t>(strobe.t_rise_board_ns));
+  const auto end = clock_.mono_ns(static_cast<std::int64_t>(strobe.t_fall_board_ns));
+  // Before the clocks are known to a tenth of a millisecond a frame is better stamped by its camera.
+  constexpr double kGoodEnoughUs = 2000;
+  if (begin && end && clock_.bound_us() < kGoodEnoughUs) strobes_.push({strobe.n, *begin, *end});
+}
+
+void SyncBoard::take(const sync_message& message, std::int64_t received_mono_ns) {
+  if (message.type == SYNC_HELLO) {
+    if (message.hello.schema_hash != SYNC_SCHEMA_HASH) {
+      set_state(BoardState::wrong_firmware,
+                fmt::format("{} speaks another protocol ({:08x}, this program {:08x}); update the board",
+                            hello_text(message.hello), message.hello.schema_hash, SYNC_SCHEMA_HASH));
+      return;
+    }
+    agreed_ = true;
+    set_state(BoardState::connected, hello_text(message.hello));
+    if (std::exchange(connected_before_, true)) {
+      const std::scoped_lock lock(mutex_);
+      ++view_.reconnects;
+    }
+  }
+  if (!agreed_) return;
+  if (message.type == SYNC_PONG &&
+      message.pong.t_received_board_ns < std::exchange(last_board_ns_, message.pong.t_received_board_ns)) {
+    begin_anew();
+    return;
+  }
+  if (message.type == SYNC_PONG)
+    clock_.add({static_cast<std::int64_t>(message.pong.t_host_ns),
+                static_cast<std::int64_t>(message.pong.t_received_board_ns),
+                static_cast<std::int64_t>(message.pong.t_sent_board_ns), received_mono_ns});
+  if (message.type == SYNC_STROBE) take_strobe(message.strobe);
+  if (message.type == SYNC_BUTTON && options_.on_button)
+    options_.on_button(static_cast<sync_press>(message.button.press));
+  const std::scoped_lock lock(mutex_);
+  switch (message.type) {
+    case SYNC_HELLO:
+      view_.hello = message.hello;
+      break;
+    case SYNC_PONG:
+      view_.clock_bound_us = clock_.bound_us();
+      view_.drift_ppm = clock_.drift_ppm();
+      break;
+    case SYNC_CONFIGURATION:
+      if (!view_.configuration && options_.trigger) to_configure_ = message.configuration;
+      view_.configuration = message.configuration;
+      break;
+    case SYNC_STATUS:
+      view_.status = message.status;
+      break;
+    case SYNC_PHOTODIODE:
+      view_.photodiode = message.photodiode;
+      break;
+    case SYNC_IMU:
+      view_.imu = message.imu;
+      break;
+    case SYNC_TEMPERATURE:
+      if (message.temperature.sensor < view_.temperature.size())
+        view_.temperature[message.temperature.sensor] = message.temperature;
+      break;
+    case SYNC_TIMECODE:
+      view_.timecode = message.timecode;
+      break;
+    case SYNC_FAULT:
+      view_.refused = fault_text(message.fault);
+      break;
+    default:
+      break;
+  }
+}
+
+}  // namespace lightwell

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "daemon/sync/board_clock_map.h"
+#include "daemon/sync/board_view.h"
+#include "daemon/sync/strobe_ring.h"
+#include "daemon/sync/sync_link.h"
+#include "interface/sync_frame.h"
+#include "interface/sync_protocol.h"
+
+namespace lightwell {
+
+struct BoardOptions {
+  SyncAddress address;
+  // Sent when the board connects; the other fields stay as the board has them.
+  struct Trigger {
+    std::uint32_t rate_numerator = 25, rate_denominator = 1;  // a second
+    std::uint32_t pulse_ns = 0;                               // 0: as the board has it
+    std::uint32_t exposure_ns = 0;                            // 0: as the board has it
+    sync_reference reference = SYNC_REFERENCE_NONE;
+    std::uint32_t reference_numerator = 1, reference_denominator = 1;
+  };
+  std::optional<Trigger> trigger;  // empty: the board's own settings stay as they are
+  // A press of the record button; called on the board's thread.
+  std::function<void(sync_press)> on_button;
+  // Opens the link; empty: as the address says.
+  std::function<Result<std::unique_ptr<SyncLink>>()> open;
+};
+
+// The daemon's side of the sync board, on a thread of its own: connects, and again whenever the board comes back; maps its
+// clock by 40 exchanges a second; keeps what it says. A board that is not there is no error.
+class SyncBoard {
+ public:
+  // strobes: takes exposures as the strobe shows them, and outlives this.
+  SyncBoard(BoardOptions options, StrobeRing& strobes);
+  ~SyncBoard();
+  SyncBoard(const SyncBoard&) = delete;
+  SyncBoard& operator=(const SyncBoard&) = delete;
+
+  [[nodiscard]] BoardView view() const;
+  // What the board's LED shows; while recording it takes no update.
+  void set_host_state(sync_host state) noexcept { host_state_ = state; }
+
+ private:
+  void run();
+  // Until the board is gone or stops speaking. The link is good for one connection.
+  Status converse(SyncLink& link);
+  Status send(SyncLink& link, const sync_message& message);
+  Status send_due(SyncLink& link);
+  void take(const sync_message& message, std::int64_t received_mono_ns);
+  void take_strobe(const sync_strobe& strobe);
+  void begin_anew();
+  Status configure(SyncLink& link, const sync_configuration& current);
+  void set_state(BoardState state, const std::string& description);
+
+  BoardOptions options_;
+  StrobeRing& strobes_;
+  std::atomic<sync_host> host_state_{SYNC_HOST_IDLE};
+  std::atomic<bool> stopping_{false};
+
+  // The thread's own.
+  BoardClockMap clock_;
+  frame_receiver receiver_{};
+  std::uint16_t sequence_ = 0;
+  std::optional<std::uint16_t> last_sequence_;
+  std::int64_t next_ping_ns_ = 0, next_state_ns_ = 0, next_hello_ns_ = 0;
+  std::int64_t last_heard_ns_ = 0;
+  std::uint64_t last_board_ns_ = 0;
+  bool connected_before_ = false;
+  bool agreed_ = false;  // HELLO with our schema
+  bool asked_ = false;   // for its configuration
+  std::optional<sync_configuration> to_configure_;
+
+  mutable std::mutex mutex_;  // guards view_
+  BoardView view_;
+  std::thread thread_;
+};
+
+}  // namespace lightwell

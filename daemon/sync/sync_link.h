@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "lighting/result.h"
+
+namespace lightwell {
+
+// Bytes to the sync board and back. Used by one thread.
+class SyncLink {
+ public:
+  virtual ~SyncLink() = default;
+  // Bytes that arrived, up to the buffer's size; 0: none within the timeout. failed: the board is gone.
+  virtual Result<std::size_t> read(std::span<std::uint8_t> buffer, std::chrono::milliseconds timeout) = 0;
+  // All of them. failed: the board is gone, or takes nothing for a second.
+  virtual Status write(std::span<const std::uint8_t> bytes) = 0;
+};
+
+// Where a board is to be found: "usb" (the first), "usb:SERIAL" or "serial:/dev/ttyACM0".
+struct SyncAddress {
+  enum class Kind { usb, serial } kind = Kind::usb;
+  std::string place;  // serial number, or path; may be empty for usb
+};
+// usage: names what is allowed.
+Result<SyncAddress> parse_sync_address(const std::string& text);
+
+// failed: nothing there, no right to use it, or it is no board; one line that says what to do.
+Result<std::unique_ptr<SyncLink>> open_sync_link(const SyncAddress& address);
+Result<std::unique_ptr<SyncLink>> open_serial_link(const std::string& path);
+// serial: empty for the first board.
+Result<std::unique_ptr<SyncLink>> open_usb_link(const std::string& serial);
+
+}  // namespace lightwell
