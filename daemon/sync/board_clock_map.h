@@ -19,8 +19,8 @@ struct ClockExchange {
 // When something happened by the host's clock, that the board has stamped with its own.
 //
 // No delay is negative: the board's t2 lies after the host's t1, its t3 before t4. So every exchange bounds the line between
-// the clocks from both sides, however long it was delayed, and the line furthest from all bounds is taken (Moon, Skelly and
-// Towsley, INFOCOM 1999, as the widest gap instead of a linear programme on one side). Late exchanges do no harm; what is
+// the clocks from both sides, however long it was delayed, and a line far from all bounds is taken (Moon, Skelly and
+// Towsley, INFOCOM 1999: there on one side, here between both). Late exchanges do no harm; what is
 // left is half the difference of the smallest delays there and back, which no exchange of messages shows.
 class BoardClockMap {
  public:
@@ -31,7 +31,8 @@ class BoardClockMap {
   [[nodiscard]] std::optional<std::int64_t> mono_ns(std::int64_t board_ns) const;
   // The board's clock against the host's: positive, the board's is faster. Ppm; 0 while the exchanges span under kFitNs.
   [[nodiscard]] double drift_ppm() const { return -slope_ * 1e6; }
-  // The line is at most so far off, while no clock wanders within the window. Infinite before the first exchange.
+  // The line is at most so far off at the last fit, by whatever line contradicts no exchange, while no clock wanders within
+  // the window (a crystal within 100 ppm, before kFitNs). Infinite before the first exchange.
   [[nodiscard]] double bound_us() const;
   [[nodiscard]] std::size_t exchanges() const { return exchanges_.size(); }
   void reset() { *this = BoardClockMap(); }
@@ -47,12 +48,14 @@ class BoardClockMap {
   };
   [[nodiscard]] Gap gap_at(double slope) const;
   void fit();
+  [[nodiscard]] double middle_ns() const { return (gap_.low + gap_.high) / 2; }
 
   std::deque<ClockExchange> exchanges_;
   ClockExchange origin_;  // of the fit
   std::size_t since_fit_ = 0;
   double slope_ = 0;
   Gap gap_;
+  double bound_ns_ = 0;
 };
 
 }  // namespace lightwell
