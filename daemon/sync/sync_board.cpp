@@ -150,12 +150,15 @@ Status SyncBoard::send_due(SyncLink& link) {
   return {};
 }
 
-// The board's settings with what was asked for in them.
+// The board's settings with what was asked for in them: the camera that it feeds on, and the trigger.
 Status SyncBoard::configure(SyncLink& link, const sync_configuration& current) {
-  const BoardOptions::Trigger& wanted = *options_.trigger;
   sync_message message = message_of(SYNC_CONFIGURE);
   sync_configuration& c = message.configuration;
   c = current;
+  c.camera_on = 1;
+  c.store = 0;  // the host says it at every start; flash wears
+  if (!options_.trigger) return send(link, message);
+  const BoardOptions::Trigger& wanted = *options_.trigger;
   c.trigger_on = 1;
   c.rate_numerator = wanted.rate_numerator;
   c.rate_denominator = wanted.rate_denominator;
@@ -164,7 +167,6 @@ Status SyncBoard::configure(SyncLink& link, const sync_configuration& current) {
   c.reference = static_cast<std::uint8_t>(wanted.reference);
   c.reference_numerator = wanted.reference_numerator;
   c.reference_denominator = wanted.reference_denominator;
-  c.store = 0;  // the host says it at every start; flash wears
   return send(link, message);
 }
 
@@ -225,7 +227,7 @@ void SyncBoard::take(const sync_message& message, std::int64_t received_mono_ns)
       view_.drift_ppm = clock_.drift_ppm();
       break;
     case SYNC_CONFIGURATION:
-      if (!view_.configuration && options_.trigger) to_configure_ = message.configuration;
+      if (!view_.configuration) to_configure_ = message.configuration;
       view_.configuration = message.configuration;
       break;
     case SYNC_STATUS:

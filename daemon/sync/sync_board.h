@@ -22,7 +22,7 @@ namespace lightwell {
 
 struct BoardOptions {
   SyncAddress address;
-  // Sent when the board connects; the other fields stay as the board has them.
+  // Sent when the board connects, with power for the camera that it feeds; the other fields stay as the board has them.
   struct Trigger {
     std::uint32_t rate_numerator = 25, rate_denominator = 1;  // a second
     std::uint32_t pulse_ns = 0;                               // 0: as the board has it
