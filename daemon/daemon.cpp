@@ -45,6 +45,10 @@ std::string needs_restart(const Configuration& now, const Configuration& wanted)
   return {};
 }
 
+bool is_camera(const std::string& source) {
+  return source.rfind("recording:", 0) != 0 && source.rfind("simulated:", 0) != 0;
+}
+
 }  // namespace
 
 // In order of construction: whoever uses a part comes after it, so that destruction goes the other way.
@@ -96,6 +100,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Configuration& configuration
 
   auto parts = std::make_unique<Parts>(configuration, *calibration);
   Parts& p = *parts;
+  p.stamper.use(is_camera(configuration.source.address));
   std::unique_ptr<Daemon> daemon(new Daemon(std::move(parts)));
   auto publisher = Publisher::start({configuration.probe.name,
                                      {configuration.dds.domain, configuration.dds.network_interface},
@@ -142,6 +147,7 @@ Status Daemon::reload(const Configuration& wanted) {
       std::move(source),
       std::make_shared<FramePath>(*calibration, frame_path_options(wanted), parts_->snapshots));
   if (!replaced) return replaced;
+  parts_->stamper.use(is_camera(wanted.source.address));
   if (now.fit != wanted.fit) parts_->fits->set_options(fit_options(wanted));
   parts_->configuration = wanted;
   parts_->calibration = *calibration;

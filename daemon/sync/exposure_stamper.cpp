@@ -23,6 +23,7 @@ void ExposureStamper::learn(const FrameInfo& info) noexcept {
 }
 
 bool ExposureStamper::stamp(FrameInfo& info) noexcept {
+  if (!used_.load(std::memory_order_relaxed)) return false;
   learn(info);
   const auto exposure =
       lead_ ? strobes_.find(*lead_ + static_cast<std::uint32_t>(info.sequence)) : std::nullopt;

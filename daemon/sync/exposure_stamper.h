@@ -24,6 +24,8 @@ class ExposureStamper final : public FrameStamper {
   // Sets capture_mono_ns and capture_utc_ns where the exposure is known; false where not. How long the exposure was stays
   // the camera's word, by which it was calibrated. Frame path only.
   bool stamp(FrameInfo& info) noexcept override;
+  // Off: frames of what no board can trigger, a take or a simulation, stay as they are.
+  void use(bool on) noexcept { used_.store(on, std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t stamped() const noexcept { return stamped_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t left() const noexcept { return left_.load(std::memory_order_relaxed); }
 
@@ -44,6 +46,7 @@ class ExposureStamper final : public FrameStamper {
   std::optional<std::uint32_t> lead_;  // trigger less sequence, once it is bound
   std::uint32_t candidate_ = 0;
   std::size_t agreeing_ = 0;  // frames in a row for the candidate
+  std::atomic<bool> used_{true};
   std::atomic<std::uint64_t> stamped_{0}, left_{0};
 };
 

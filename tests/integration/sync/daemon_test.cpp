@@ -93,6 +93,7 @@ TEST_F(DaemonAndBoard, WhatTheBoardMeasuresIsInTheStatus) {
   const json up = b["up_m_s2"];
   EXPECT_NEAR(std::hypot(up[0].get<double>(), up[1].get<double>(), up[2].get<double>()), 9.81, 0.3);
   EXPECT_EQ(b["refused"], "");
+  EXPECT_EQ(b["stamped_frames"], 0) << "no board triggers a simulation";
   EXPECT_EQ(status()["alarm"], "");
   EXPECT_NE(metrics().find("lightwell_board_connected 1"), std::string::npos);
 }

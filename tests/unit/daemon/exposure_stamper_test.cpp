@@ -47,6 +47,20 @@ TEST(ExposureStamper, AFrameTakesTheMiddleOfItsExposure) {
   EXPECT_EQ(stamper.stamped(), 301 - kUntil);
 }
 
+TEST(ExposureStamper, WhereItIsNotUsedFramesStayAsTheyAre) {
+  StrobeRing strobes;
+  ExposureStamper stamper(strobes);
+  stamper.use(false);
+  for (std::uint32_t n = 0; n < 50; ++n) {
+    strobes.push(exposure(n));
+    FrameInfo info = frame(n, n);
+    const std::int64_t before = info.capture_mono_ns;
+    EXPECT_FALSE(stamper.stamp(info));
+    EXPECT_EQ(info.capture_mono_ns, before);
+  }
+  EXPECT_EQ(stamper.left(), 0u);
+}
+
 TEST(ExposureStamper, WithoutAStrobeAFrameStaysAsItIs) {
   StrobeRing strobes;
   ExposureStamper stamper(strobes);
