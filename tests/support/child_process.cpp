@@ -3,6 +3,7 @@
 #include "tests/support/child_process.h"
 
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -63,6 +64,7 @@ ChildProcess::ChildProcess(std::vector<std::string> command, std::filesystem::pa
   const int out = options.stdout_file.empty() ? -1 : open_for_writing(options.stdout_file);
   pid_ = ::fork();
   if (pid_ == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that is killed leaves nothing behind
     ::dup2(in, STDIN_FILENO);
     ::dup2(err, STDERR_FILENO);
     if (out >= 0) ::dup2(out, STDOUT_FILENO);
