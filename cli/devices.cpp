@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <net/if.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -10,6 +11,9 @@
 #include "cli/command.h"
 #include "daemon/capture/gvcp.h"
 #include "daemon/capture/inspect_camera.h"
+#include "daemon/capture/list_libcamera.h"
+#include "daemon/capture/list_v4l2.h"
+#include "daemon/capture/v4l2_format.h"
 #include "interface/option_range.h"
 
 namespace lightwell::cli {
@@ -60,6 +64,132 @@ void print(const GvcpDevice& device, const Result<CameraCapabilities>& camera) {
   std::printf("\n");
 }
 
+// What a format becomes here; empty: nothing we read.
+std::string pixel_format_of(std::uint32_t fourcc) {
+  const auto known = v4l2_format_of(fourcc);
+  return known ? std::string(name(known->becomes)) : std::string();
+}
+
+nlohmann::json as_json(const V4l2Control& control) {
+  using Kind = V4l2Control::Kind;
+  constexpr std::array kKinds = {"integer", "boolean", "menu", "integer menu", "button", "other"};
+  nlohmann::json out = {{"name", control.name},
+                        {"kind", kKinds.at(static_cast<std::size_t>(control.kind))},
+                        {"hdr", control.is_hdr()},
+                        {"read_only", control.read_only},
+                        {"inactive", control.inactive}};
+  if (control.kind != Kind::button && control.kind != Kind::other)
+    out.update({{"value", control.value},
+                {"default", control.standard},
+                {"range", {control.minimum, control.maximum}},
+                {"step", control.step}});
+  for (const auto& [index, words] : control.choices)
+    out["choices"].push_back({{"value", index}, {"name", words}});
+  return out;
+}
+
+nlohmann::json as_json(const V4l2Description& device) {
+  nlohmann::json out = {{"source", "v4l2:" + device.path}, {"path", device.path}};
+  if (!device.unavailable.empty()) {
+    out["unavailable"] = device.unavailable;
+    return out;
+  }
+  auto formats = nlohmann::json::array(), controls = nlohmann::json::array();
+  for (const V4l2FormatDescription& format : device.formats) {
+    auto sizes = nlohmann::json::array();
+    for (const V4l2Size& size : format.sizes)
+      sizes.push_back({{"width", {size.width, size.largest_width}},
+                       {"height", {size.height, size.largest_height}},
+                       {"rate_range_hz", {size.rate_min_hz, size.rate_max_hz}}});
+    formats.push_back({{"fourcc", fourcc_name(format.fourcc)},
+                       {"description", format.description},
+                       {"pixel_format", pixel_format_of(format.fourcc)},
+                       {"sizes", sizes}});
+  }
+  for (const V4l2Control& control : device.controls) controls.push_back(as_json(control));
+  out.update({{"card", device.card},
+              {"driver", device.driver},
+              {"bus", device.bus},
+              {"missing_signal", device.missing_signal},
+              {"width", device.layout.width},
+              {"height", device.layout.height},
+              {"fourcc", fourcc_name(device.layout.fourcc)},
+              {"pixel_format", pixel_format_of(device.layout.fourcc)},
+              {"rate_hz", device.rate_hz},
+              {"formats", formats},
+              {"controls", controls}});
+  return out;
+}
+
+std::string text(const V4l2Size& size) {
+  std::array<char, 96> out{};
+  const bool range = size.width != size.largest_width || size.height != size.largest_height;
+  int n = std::snprintf(out.data(), out.size(), "%d×%d", size.width, size.height);
+  if (range)
+    n += std::snprintf(&out.at(static_cast<std::size_t>(n)), out.size() - static_cast<std::size_t>(n),
+                       " to %d×%d", size.largest_width, size.largest_height);
+  if (size.rate_max_hz > 0)
+    std::snprintf(&out.at(static_cast<std::size_t>(n)), out.size() - static_cast<std::size_t>(n),
+                  " at %.4g to %.4g Hz", size.rate_min_hz, size.rate_max_hz);
+  return out.data();
+}
+
+void print(const V4l2Description& device) {
+  if (!device.unavailable.empty()) {
+    std::printf("v4l2:%s  %s\n", device.path.c_str(), device.unavailable.c_str());
+    return;
+  }
+  std::printf("v4l2:%s  %s, driver %s, %s\n", device.path.c_str(), device.card.c_str(), device.driver.c_str(),
+              device.bus.c_str());
+  if (!device.missing_signal.empty()) std::printf("    %s\n", device.missing_signal.c_str());
+  if (device.layout.width > 0)
+    std::printf("    %d×%d %s at %.4g Hz\n", device.layout.width, device.layout.height,
+                fourcc_name(device.layout.fourcc).c_str(), device.rate_hz);
+  for (const V4l2FormatDescription& format : device.formats) {
+    const std::string becomes = pixel_format_of(format.fourcc);
+    if (becomes.empty()) continue;
+    std::printf("    format %s, read as %s:", fourcc_name(format.fourcc).c_str(), becomes.c_str());
+    for (const V4l2Size& size : format.sizes)
+      std::printf(" %s%s", text(size).c_str(), &size == &format.sizes.back() ? "" : ",");
+    std::printf("\n");
+  }
+  for (const V4l2Control& control : device.controls) {
+    if (control.kind == V4l2Control::Kind::other || control.kind == V4l2Control::Kind::button) continue;
+    std::printf("    control %s = %lld (%lld to %lld)%s%s\n", control.name.c_str(),
+                static_cast<long long>(control.value), static_cast<long long>(control.minimum),
+                static_cast<long long>(control.maximum), control.is_hdr() ? ", HDR" : "",
+                control.read_only ? ", read only" : "");
+  }
+}
+
+nlohmann::json as_json(const LibcameraDescription& camera) {
+  auto formats = nlohmann::json::array(), controls = nlohmann::json::array();
+  for (const auto& format : camera.formats)
+    formats.push_back({{"name", format.name},
+                       {"pixel_format", format.pixel_format},
+                       {"raw", format.raw},
+                       {"sizes", format.sizes}});
+  for (const auto& [name, range] : camera.controls) controls.push_back({{"name", name}, {"range", range}});
+  return {{"source", "libcamera:" + camera.id},
+          {"id", camera.id},
+          {"model", camera.model},
+          {"formats", formats},
+          {"controls", controls}};
+}
+
+void print(const LibcameraDescription& camera) {
+  std::printf("libcamera:%s  %s\n", camera.id.c_str(), camera.model.c_str());
+  for (const auto& format : camera.formats) {
+    if (format.pixel_format.empty()) continue;
+    std::printf("    format %s%s, read as %s:", format.name.c_str(), format.raw ? "" : " (processed)",
+                format.pixel_format.c_str());
+    for (const std::string& size : format.sizes) std::printf(" %s", size.c_str());
+    std::printf("\n");
+  }
+  for (const auto& [name, range] : camera.controls)
+    std::printf("    control %s %s\n", name.c_str(), range.c_str());
+}
+
 int run(const Options& options) {
   for (const std::string& name : options.interfaces) {
     if (::if_nametoindex(name.c_str()) != 0) continue;
@@ -73,6 +203,10 @@ int run(const Options& options) {
   }
   const auto timeout = std::chrono::milliseconds(static_cast<long>(options.timeout_s * 1000));
   const auto devices = gvcp_discover(timeout, options.interfaces);
+  // --interface asks about a network alone.
+  const auto local = options.interfaces.empty() ? list_v4l2() : std::vector<V4l2Description>();
+  const auto through_libcamera =
+      options.interfaces.empty() ? list_libcamera() : std::vector<LibcameraDescription>();
   auto list = nlohmann::json::array();
   for (const GvcpDevice& device : devices) {
     const auto camera = inspect_camera(device.address);
@@ -81,11 +215,23 @@ int run(const Options& options) {
     else
       print(device, camera);
   }
+  const auto tell = [&](const auto& found) {
+    for (const auto& device : found) {
+      if (options.json)
+        list.push_back(as_json(device));
+      else
+        print(device);
+    }
+  };
+  tell(local);
+  tell(through_libcamera);
   // A device may say anything of itself, in any encoding.
   constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
   if (options.json)
     std::printf("%s\n", nlohmann::json{{"devices", list}}.dump(2, ' ', false, kReplace).c_str());
   if (devices.empty()) std::fprintf(stderr, "lightwell: no GigE Vision device found\n");
+  if (devices.empty() && options.interfaces.empty() && local.empty() && through_libcamera.empty())
+    std::fprintf(stderr, "lightwell: no V4L2 or libcamera camera either\n");
   return 0;
 }
 
@@ -94,7 +240,7 @@ int run(const Options& options) {
 Command add_devices(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      app.add_subcommand("devices", "Cameras that answer on the network, and what they can do");
+      app.add_subcommand("devices", "Cameras on the network and in this machine, and what they can do");
   command
       ->add_option("--interface", options->interfaces,
                    "Only on this network interface, for example lo; may be repeated")

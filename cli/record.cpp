@@ -79,8 +79,9 @@ Command add_record(CLI::App& app) {
       ->check(numbers_above_0_to(kWeek, "above 0 to 604800 (a week)"))
       ->required();
   command->add_option("--out", arguments->out, "The take (.mkv); never overwrites")->required();
-  command->add_option("--source", options.source,
-                      "Record from here, without a daemon: aravis:ADDRESS, recording:FILE");
+  command->add_option(
+      "--source", options.source,
+      "Record from here, without a daemon: aravis:ADDRESS, v4l2:/dev/videoN, libcamera:ID, recording:FILE");
   command->add_option("--codec", arguments->codec, "raw, or ffv1: a third of the size, up to a core of work")
       ->check(CLI::IsMember({"raw", "ffv1"}));
   command->add_option("--calibration", options.calibration, "Folder to attach to a take made with --source");

@@ -90,7 +90,8 @@ const std::vector<Key>& keys() {
   using C = Configuration;
   static const std::vector<Key> table = {
       text("probe.name", "name of this probe in everything it publishes", &C::probe, &C::Probe::name),
-      text("source.address", "aravis:ADDRESS, v4l2:/dev/videoN, recording:FILE or simulated:NAME", &C::source,
+      text("source.address",
+           "aravis:ADDRESS, v4l2:/dev/videoN, libcamera:ID, recording:FILE or simulated:NAME", &C::source,
            &C::Source::address),
       integer("source.width", "pixels asked of the camera, 0: as it is", &C::source, &C::Source::width, 0,
               16384),
@@ -102,7 +103,8 @@ const std::vector<Key>& keys() {
              &C::Source::rate_hz, 0, 10000),
       number("source.exposure_us", "exposure asked of the camera in µs, 0: as it is", &C::source,
              &C::Source::exposure_us, 0, 1e7),
-      text("source.controls", "V4L2 controls to set: name=value, …, as `lightwell devices` lists them",
+      text("source.controls",
+           "controls of V4L2 and libcamera to set: name=value, …, as `lightwell devices` lists them",
            &C::source, &C::Source::controls),
       integer("source.buffers", "frames the camera may fill ahead", &C::source, &C::Source::buffers, 3, 256),
       integer("source.packet_size", "GigE Vision packet in bytes; 1400 where jumbo frames do not pass",

@@ -48,7 +48,8 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--config", a.config, "TOML file; --print-config shows every key");
   app.add_option("--calibration", a.calibration, "folder with response.json, lens.json, flat.json");
   app.add_option("--record-dir", a.record_dir, "folder for takes");
-  app.add_option("--source", a.source, "aravis:ADDRESS, v4l2:/dev/videoN, recording:FILE or simulated:NAME");
+  app.add_option("--source", a.source,
+                 "aravis:ADDRESS, v4l2:/dev/videoN, libcamera:ID, recording:FILE or simulated:NAME");
   app.add_flag("--print-config", a.print_config, "print the configuration with the origin of every value");
   app.add_flag("--check", a.check, "check configuration and calibration, then end");
   app.footer("Example: lightwelld --source aravis:192.168.1.20 --calibration probe-07/ --record-dir takes/");

@@ -31,7 +31,8 @@ struct SessionSettings {
 };
 
 struct SessionFrame {
-  enum class Outcome { complete, incomplete, no_room };  // no_room: every buffer is leased
+  // passed_over: whole, but every buffer is leased, or what was asked for is not in force yet
+  enum class Outcome { complete, incomplete, passed_over };
   enum class Stamp {
     none,
     start_of_exposure,

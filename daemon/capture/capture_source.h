@@ -119,8 +119,7 @@ struct CaptureOptions {
   std::string pixel_format;  // empty: as the camera has it
   double rate_hz = 0;        // 0: as the camera has it
   double exposure_us = 0;    // 0: as the camera has it
-  std::string
-      controls;  // V4L2: "name=value, …" as v4l2-ctl spells them, set in this order before the exposure
+  std::string controls;  // V4L2, libcamera: "name=value, …" in the device's own names, before the exposure
   int buffers = 8;
   int packet_size = 9000;  // GigE Vision, bytes; 1400 beyond loopback without jumbo frames
   int socket_buffer_bytes = 8 << 20;
@@ -128,7 +127,7 @@ struct CaptureOptions {
   bool loop = false;  // recording
 };
 
-// source: aravis:ADDRESS | v4l2:/dev/videoN | recording:FILE | simulated:NAME (contract). Fails with usage for an unknown kind, naming what
+// source: aravis:ADDRESS | v4l2:/dev/videoN | libcamera:ID | recording:FILE | simulated:NAME (contract). Fails with usage for an unknown kind, naming what
 // is allowed.
 Result<std::unique_ptr<CaptureSource>> make_capture_source(const std::string& source,
                                                            const CaptureOptions& options);

@@ -9,6 +9,9 @@
 
 #include "daemon/capture/aravis_source.h"
 #include "daemon/capture/capture_source.h"
+#ifdef LIGHTWELL_LIBCAMERA
+#include "daemon/capture/libcamera_source.h"
+#endif
 #include "daemon/capture/recording_source.h"
 #include "daemon/capture/simulated_source.h"
 #include "daemon/capture/v4l2_source.h"
@@ -26,6 +29,12 @@ Made make_v4l2(const std::string& path, const CaptureOptions& options) {
   return make_v4l2_source(path, options);
 }
 
+#ifdef LIGHTWELL_LIBCAMERA
+Made make_libcamera(const std::string& id, const CaptureOptions& options) {
+  return make_libcamera_source(id, options);
+}
+#endif
+
 struct Kind {
   std::string_view name;
   std::string_view what;
@@ -33,10 +42,11 @@ struct Kind {
 };
 
 constexpr std::array kKinds = {
-    Kind{"aravis", "ADDRESS", make_aravis},
-    Kind{"v4l2", "/dev/videoN", make_v4l2},
-    Kind{"recording", "FILE", make_recording_source},
-    Kind{"simulated", "NAME", make_simulated_source},
+    Kind{"aravis", "ADDRESS", make_aravis},           Kind{"v4l2", "/dev/videoN", make_v4l2},
+#ifdef LIGHTWELL_LIBCAMERA
+    Kind{"libcamera", "ID", make_libcamera},
+#endif
+    Kind{"recording", "FILE", make_recording_source}, Kind{"simulated", "NAME", make_simulated_source},
 };
 
 std::string kinds() {

@@ -409,7 +409,7 @@ bool V4l2Session::keep(std::uint32_t index, std::span<const std::byte> bytes, Se
   {
     const std::lock_guard lock(mutex_);
     if (returned_.empty()) {
-      frame.outcome = SessionFrame::Outcome::no_room;
+      frame.outcome = SessionFrame::Outcome::passed_over;
       return false;
     }
     frame.buffer = returned_.back();

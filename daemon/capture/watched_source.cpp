@@ -250,7 +250,8 @@ void WatchedSource::frame_done(CaptureSession& session, const SessionFrame& fram
       first_frame_ = delivered_before_ = true;
       stamp_ = frame.stamp;
       settings_.exposure_us = frame.exposure_us;
-      if (frame.outcome == SessionFrame::Outcome::no_room) {
+      settings_.rate_hz = session.settings().rate_hz;
+      if (frame.outcome == SessionFrame::Outcome::passed_over) {
         ++counters_.skipped;
         return;
       }

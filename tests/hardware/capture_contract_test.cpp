@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "daemon/capture/list_libcamera.h"
 #include "tests/hardware/loopback_writer.h"
 #include "tests/support/capture_contract.h"
 
@@ -68,6 +69,29 @@ struct LoopbackSubject {
   }  // nobody writes
 };
 INSTANTIATE_TYPED_TEST_SUITE_P(V4l2Loopback, CaptureContract, LoopbackSubject);
+
+#ifdef LIGHTWELL_LIBCAMERA
+// vimc through libcamera.
+struct LibcameraSubject {
+  std::string id;
+  std::string missing() {
+    const auto cameras = list_libcamera();
+    if (cameras.empty()) return "libcamera sees no camera: run in the virtual machine";
+    id = cameras.front().id;
+    return {};
+  }
+  static CaptureOptions options() {
+    CaptureOptions o;
+    o.width = 192;  // vimc scales by three and wants multiples of six
+    o.height = 120;
+    o.exposure_us = 1000;
+    return o;
+  }
+  std::unique_ptr<CaptureSource> make() { return made("libcamera:" + id, options()); }
+  std::unique_ptr<CaptureSource> make_silent() { return made("libcamera:nobody", options()); }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(Libcamera, CaptureContract, LibcameraSubject);
+#endif
 
 }  // namespace
 }  // namespace lightwell::test
