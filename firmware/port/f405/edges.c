@@ -6,7 +6,8 @@
 #include "firmware/port/f405/port.h"
 #include "firmware/port/f405/registers.h"
 
-enum { kEdges = 64, kDone = 8 };
+// A pulse is reported at its rise, and another given for it, while it is still high.
+enum { kEdges = 64, kDone = 8, kWaiting = PULSES_AHEAD + 1 };
 enum { kActiveOnMatch = 1, kInactiveOnMatch = 2, kForcedInactive = 4 };
 enum { kCompare1 = 1 << 1, kCapture2 = 1 << 2, kCapture3 = 1 << 3, kCapture4 = 1 << 4 };
 static const uint32_t kOvercaptures = 7u << 10;  // of channels 2 to 4
@@ -15,7 +16,7 @@ static const uint32_t kOvercaptures = 7u << 10;  // of channels 2 to 4
 static hal_edge_event edges[kEdges];
 static volatile uint32_t edges_head;
 static uint32_t edges_tail;
-static struct { uint32_t rise, fall; } waiting[PULSES_AHEAD];
+static struct { uint32_t rise, fall; } waiting[kWaiting];
 static volatile unsigned waiting_count;
 static volatile bool high;
 static volatile bool done[kDone];
@@ -125,7 +126,7 @@ uint32_t hal_ticks(void) {
 
 void hal_pulse(uint32_t rise, uint32_t fall) {
   interrupts_off();
-  if (waiting_count < (unsigned)PULSES_AHEAD) {
+  if (waiting_count < (unsigned)kWaiting) {
     waiting[waiting_count].rise = rise;
     waiting[waiting_count].fall = fall;
     if (++waiting_count == 1u) arm();

@@ -149,9 +149,9 @@ class Emulator {
     return ask(message, type);
   }
 
-  // Lets the board run until done says so; gives up after ten minutes.
+  // Lets the board run until done says so; gives up after half an hour.
   bool run_until(const std::function<bool()>& done) {
-    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(10);
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(30);
     while (!done() && std::chrono::steady_clock::now() < until) listen(10);
     return done();
   }
