@@ -3,7 +3,7 @@
 #pragma once
 
 // The sync board on USB: an interface with one bulk endpoint a direction, found by its class, whatever vendor and product
-// the device carries and whatever numbers its endpoints have. C11, shared with the firmware.
+// the device carries and whatever numbers its endpoints have. C11, for a firmware that has USB too.
 
 #define SYNC_USB_CLASS 0xffu     // vendor specific
 #define SYNC_USB_SUBCLASS 0x4cu  // 'L'

@@ -184,7 +184,7 @@ void SyncBoard::take_strobe(const sync_strobe& strobe) {
   if ((strobe.flags & SYNC_STROBE_PAIRED) == 0 || (strobe.flags & SYNC_STROBE_NO_FALL) != 0) return;
   const auto begin = clock_.mono_ns(static_cast<std::int64_t>(strobe.t_rise_board_ns));
   const auto end = clock_.mono_ns(static_cast<std::int64_t>(strobe.t_fall_board_ns));
-  // Before the clocks are known to a tenth of a millisecond a frame is better stamped by its camera.
+  // While the clocks may be further apart than that, a frame is better stamped by its camera.
   constexpr double kGoodEnoughUs = 2000;
   if (begin && end && clock_.bound_us() < kGoodEnoughUs) strobes_.push({strobe.n, *begin, *end});
 }
