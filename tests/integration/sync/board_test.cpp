@@ -15,25 +15,18 @@
 #include "daemon/sync/exposure_stamper.h"
 #include "daemon/sync/sync_board.h"
 #include "firmware/core/board.h"
+#include "tests/support/eventually.h"
 
 namespace lightwell {
 namespace {
 
 using std::chrono::milliseconds;
+using test::eventually;
 
 constexpr std::uint32_t kTickHz = 84'000'000;
 constexpr double kDrift = 40e-6;  // of the board's crystal
 constexpr std::int64_t kExposureNs = 4'000'000;
 constexpr std::int64_t kCameraDelayNs = 120'000;  // from trigger to strobe
-
-bool eventually(const std::function<bool()>& holds, milliseconds patience = milliseconds(10000)) {
-  const auto end = std::chrono::steady_clock::now() + patience;
-  while (std::chrono::steady_clock::now() < end) {
-    if (holds()) return true;
-    std::this_thread::sleep_for(milliseconds(5));
-  }
-  return holds();
-}
 
 // The firmware's core on a thread, in real time, with a camera that answers each trigger, and the link to its host.
 class Hardware {

@@ -13,20 +13,13 @@
 #include <vector>
 
 #include "daemon/clock.h"
+#include "tests/support/eventually.h"
 
 namespace lightwell {
 namespace {
 
 using std::chrono::milliseconds;
-
-bool eventually(const std::function<bool()>& holds, milliseconds patience = milliseconds(5000)) {
-  const auto end = std::chrono::steady_clock::now() + patience;
-  while (std::chrono::steady_clock::now() < end) {
-    if (holds()) return true;
-    std::this_thread::sleep_for(milliseconds(5));
-  }
-  return holds();
-}
+using test::eventually;
 
 // A board as a test tells it to be, at the other end of a link: answers what is asked, with a clock of its own.
 class ScriptedBoard {
@@ -253,8 +246,6 @@ TEST_F(SyncBoards, StrobesComeByTheHostsClock) {
 TEST_F(SyncBoards, TheConfiguredTriggerIsSentWithWhatTheBoardHas) {
   BoardOptions with = options();
   with.trigger = BoardOptions::Trigger{};
-  with.trigger->rate_numerator = 30000;
-  with.trigger->rate_denominator = 1001;
   with.trigger->rate_numerator = 24;
   there_.behave({});
   SyncBoard board(with, strobes_);
@@ -285,7 +276,7 @@ TEST_F(SyncBoards, ABoardThatGoesIsFoundAgainWithinTwoSeconds) {
   ASSERT_TRUE(eventually([&] { return board.view().state == BoardState::no_device; }));
   EXPECT_FALSE(board.view().hello) << "nothing of the board that is gone is told";
   there_.behave({});
-  EXPECT_TRUE(eventually([&] { return connected(board); }, milliseconds(2000)));
+  EXPECT_TRUE(eventually([&] { return connected(board); }, std::chrono::seconds(2)));
   EXPECT_EQ(board.view().reconnects, 1u);
 }
 
