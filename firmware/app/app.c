@@ -44,9 +44,11 @@ static void move_samples(void) {
 
 static void move_bytes(void) {
   uint8_t byte;
-  for (int i = 0; i < kBytesATurn && hal_link_read(&byte); ++i) board_byte(&self, byte, hal_ticks());
-  for (int i = 0; i < kBytesATurn && hal_link_ready() && outbox_take(&self.out, &byte); ++i)
-    hal_link_write(byte);
+  for (uint8_t link = 0; link < (uint8_t)BOARD_LINKS; ++link)
+    for (int i = 0; i < kBytesATurn && hal_link_read(link, &byte); ++i)
+      board_byte(&self, link, byte, hal_ticks());
+  for (int i = 0; i < kBytesATurn && hal_link_ready(self.link) && outbox_take(&self.out, &byte); ++i)
+    hal_link_write(self.link, byte);
 }
 
 void app_poll(void) {

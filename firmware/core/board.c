@@ -2,46 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/board.h"
 
+#include "firmware/core/board_requests.h"
 #include "firmware/core/flicker_advice.h"
 #include "firmware/core/settings.h"
 #include "firmware/core/settings_store.h"
 
 enum {
   kStatusMs = 1000,
-  kBounceUs = 50,
   kImuEvery = 8,           // of 208 a second: the host turns a frame, not a joystick
   kConfirmAfterMs = 10000  // of talking to a host: the image works
 };
 
-uint32_t board_ms(const board* self) {
-  return (uint32_t)(self->time.now / (self->facts->tick_hz / 1000u));
-}
-
-uint64_t board_ns(const board* self, uint64_t ticks) {
-  return ticks_to_ns(ticks, self->facts->tick_hz);
-}
-
-void board_send(board* self, const sync_message* message) {
-  (void)outbox_send(&self->out, message);
-}
-
-void board_apply(board* self) {
-  const sync_configuration* s = &self->settings;
-  const uint32_t tick_hz = self->facts->tick_hz;
-  pulses_configure(&self->train, s, self->time.now);
-  self->restart_train = true;
-  strobe_init(&self->camera_strobe, (uint64_t)ns_to_ticks(s->strobe_window_ns, tick_hz),
-              self->train.next.period, (uint64_t)kBounceUs * tick_hz / 1000000u);
-  self->light.dark = (float)s->photodiode_dark / 16.0f;
-  host_guard_init(&self->host, s->heartbeat_ms, board_ms(self));
-  camera_guard_init(&self->camera, s->camera_on != 0u, s->camera_watchdog_ms, s->camera_off_ms,
-                    board_ms(self));
-}
-
 void board_init(board* self, const board_facts* facts, uint32_t counter) {
   self->facts = facts;
   board_time_init(&self->time, counter);
-  frame_receiver_init(&self->receiver);
+  for (unsigned i = 0; i < (unsigned)BOARD_LINKS; ++i) frame_receiver_init(&self->receiver[i]);
+  self->link = 0;
   outbox_init(&self->out);
   self->settings = settings_default();
   self->stored = facts->memory != NULL && settings_load(facts->memory, &self->settings);
@@ -106,10 +82,15 @@ void board_poll(board* self, uint32_t counter) {
   }
 }
 
-void board_byte(board* self, uint8_t byte, uint32_t counter) {
+void board_byte(board* self, uint8_t link, uint8_t byte, uint32_t counter) {
   frame_view frame;
   (void)board_time_update(&self->time, counter);
-  if (!frame_receive(&self->receiver, byte, &frame)) return;
+  if (!frame_receive(&self->receiver[link], byte, &frame)) return;
+  if (link != self->link) {
+    if (!board_is_hello(&frame)) return;
+    outbox_clear(&self->out);  // what was for the host at the other end
+    self->link = link;
+  }
   host_guard_heard(&self->host, board_ms(self));
   board_answer(self, &frame);
 }
@@ -266,8 +247,4 @@ bool board_led(const board* self) {
   lamp shows = LAMP_ALONE;
   if (self->greeted && !self->safe) shows = (lamp)((unsigned)LAMP_IDLE + self->host_state);
   return lamp_is_lit(shows, board_ms(self));
-}
-
-bool board_camera_power(board* self) {
-  return camera_guard_power(&self->camera, self->train.running, board_ms(self));
 }

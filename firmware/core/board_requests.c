@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-// What the host asks, and what it is told.
-#include "firmware/core/board.h"
+#include "firmware/core/board_requests.h"
+
 #include "firmware/core/settings.h"
 #include "firmware/core/settings_store.h"
 
@@ -106,35 +106,6 @@ static void take_update(board* self, const sync_message* request) {
   answer_update(self, request->type, code);
 }
 
-void board_send_status(board* self) {
-  const servo* reference = &self->train.reference;
-  sync_message message = {.type = SYNC_STATUS};
-  sync_status* s = &message.status;
-  s->t_board_ns = board_ns(self, self->time.now);
-  s->lock = (uint8_t)reference->state;
-  s->phase_error_ns = servo_error_ns(reference);
-  s->phase_rms_ns = servo_rms_ns(reference);
-  s->frequency_ppb = servo_frequency_ppb(reference);
-  if (reference->state == SYNC_LOCK_HOLDOVER)
-    s->holdover_s = (uint32_t)((self->time.now - reference->held.last_edge) / self->facts->tick_hz);
-  s->triggers = self->train.sent;
-  s->late_triggers = self->train.next.late + self->train.missed;
-  s->strobes = self->camera_strobe.paired;
-  s->unanswered_triggers = self->camera_strobe.unanswered;
-  s->stray_strobes = self->camera_strobe.stray;
-  s->double_edges = self->camera_strobe.doubled;
-  s->reference_edges = reference->edges;
-  s->refused_edges = reference->refused;
-  s->overruns = self->overruns;
-  s->link_good = self->receiver.good;
-  s->link_damaged = self->receiver.damaged;
-  s->link_dropped = self->out.dropped;
-  s->power_cycles = self->camera.cycles;
-  s->camera_on = board_camera_power(self) ? 1u : 0u;
-  s->safe = self->safe ? 1u : 0u;
-  board_send(self, &message);
-}
-
 static void answer(board* self, const sync_message* request) {
   switch (request->type) {
     case SYNC_HELLO_REQUEST:
@@ -177,4 +148,10 @@ void board_answer(board* self, const frame_view* frame) {
   else
     refuse(self, SYNC_FAULT_PAYLOAD_SIZE, frame->type, 0, (int64_t)sync_payload_size(frame->type),
            (int64_t)sync_payload_size(frame->type));
+}
+
+bool board_is_hello(const frame_view* frame) {
+  sync_message request;
+  return frame->version == SYNC_PROTOCOL_VERSION && frame_message(frame, &request) &&
+         request.type == SYNC_HELLO_REQUEST;
 }

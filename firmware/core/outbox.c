@@ -9,6 +9,10 @@ void outbox_init(outbox* self) {
   self->dropped = 0;
 }
 
+void outbox_clear(outbox* self) {
+  self->tail = self->head;
+}
+
 bool outbox_send(outbox* self, const sync_message* message) {
   uint8_t wire[SYNC_MAX_WIRE];
   // A dropped frame uses its number up: the host sees the gap.

@@ -23,6 +23,7 @@ typedef struct {
 } outbox;
 
 void outbox_init(outbox* self);
+void outbox_clear(outbox* self);  // what waits is gone, and not counted as dropped
 bool outbox_send(outbox* self, const sync_message* message);
 
 // The next byte for the link; false: none.

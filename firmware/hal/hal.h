@@ -18,10 +18,10 @@ const board_facts* hal_init(void);
 
 uint32_t hal_ticks(void);  // the free-running timer that makes and stamps edges; wraps at 2^32
 
-// The link to the host: UART, or USB bulk.
-bool hal_link_read(uint8_t* byte);  // false: nothing has arrived
-bool hal_link_ready(void);          // one byte can be written without waiting
-void hal_link_write(uint8_t byte);
+// The links to a host, below BOARD_LINKS: UART, USB bulk. A port that has one has link 0.
+bool hal_link_read(uint8_t link, uint8_t* byte);  // false: nothing has arrived
+bool hal_link_ready(uint8_t link);                // one byte can be written without waiting
+void hal_link_write(uint8_t link, uint8_t byte);  // only where it is ready
 
 // Trigger pulses, in order, made by output compare. The port holds PULSES_AHEAD of them.
 void hal_pulse(uint32_t rise, uint32_t fall);

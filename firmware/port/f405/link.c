@@ -35,16 +35,17 @@ uint32_t link_overruns(void) {
   return lost;
 }
 
-bool hal_link_read(uint8_t* byte) {
-  if (ring_head == ring_tail) return false;
+bool hal_link_read(uint8_t link, uint8_t* byte) {
+  if (link != 0u || ring_head == ring_tail) return false;
   *byte = ring[ring_tail++];
   return true;
 }
 
-bool hal_link_ready(void) {
-  return (LINK_USART->status & (uint32_t)kEmpty) != 0u;
+bool hal_link_ready(uint8_t link) {
+  return link == 0u && (LINK_USART->status & (uint32_t)kEmpty) != 0u;
 }
 
-void hal_link_write(uint8_t byte) {
+void hal_link_write(uint8_t link, uint8_t byte) {
+  (void)link;
   LINK_USART->data = byte;
 }

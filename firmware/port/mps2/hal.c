@@ -162,17 +162,18 @@ const board_facts* hal_init(void) {
   return &kFacts;
 }
 
-bool hal_link_read(uint8_t* byte) {
-  if (ring_head == ring_tail) return false;
+bool hal_link_read(uint8_t link, uint8_t* byte) {
+  if (link != 0u || ring_head == ring_tail) return false;
   *byte = ring[ring_tail++];
   return true;
 }
 
-bool hal_link_ready(void) {
-  return (LINK_UART->state & 1u) == 0u;
+bool hal_link_ready(uint8_t link) {
+  return link == 0u && (LINK_UART->state & 1u) == 0u;
 }
 
-void hal_link_write(uint8_t byte) {
+void hal_link_write(uint8_t link, uint8_t byte) {
+  (void)link;
   LINK_UART->data = byte;
 }
 

@@ -71,13 +71,13 @@ uint32_t hal_ticks() {
   return running->world.ticks();
 }
 
-bool hal_link_read(uint8_t* byte) {
-  return lightwell::sync_simulator::take(running->from_host, *byte);
+bool hal_link_read(uint8_t link, uint8_t* byte) {
+  return link == 0 && lightwell::sync_simulator::take(running->from_host, *byte);
 }
-bool hal_link_ready() {
-  return running->to_host.size() < lightwell::sync_simulator::Simulator::kLinkBytes;
+bool hal_link_ready(uint8_t link) {
+  return link == 0 && running->to_host.size() < lightwell::sync_simulator::Simulator::kLinkBytes;
 }
-void hal_link_write(uint8_t byte) {
+void hal_link_write(uint8_t /*link*/, uint8_t byte) {
   running->to_host.push_back(byte);
 }
 

@@ -42,7 +42,7 @@ class World {
     send_bytes({wire, wire + frame_encode_message(&message, sequence_++, wire)});
   }
   void send_bytes(const std::vector<std::uint8_t>& bytes) {
-    for (const std::uint8_t byte : bytes) board_byte(self.get(), byte, counter);
+    for (const std::uint8_t byte : bytes) board_byte(self.get(), link, byte, counter);
   }
   void send(std::uint8_t type) {
     sync_message message{};
@@ -131,6 +131,7 @@ class World {
   board_facts facts{};
   std::unique_ptr<board> self = std::make_unique<board>();
   std::uint32_t counter;
+  std::uint8_t link = 0;  // over which the host speaks
   std::uint64_t now = 0;
   std::deque<std::uint32_t> waiting, strobes;
   std::vector<std::uint32_t> pulses;
@@ -172,6 +173,44 @@ TEST(Board, PingComesBackWithBoardTimeAcrossTheWrap) {
   EXPECT_EQ(pong.pong.t_host_ns, 0x0807060504030201ull);
   EXPECT_EQ(pong.pong.t_received_board_ns, ticks_to_ns(0x100000010ull, kHz));
   EXPECT_LE(pong.pong.t_received_board_ns, pong.pong.t_sent_board_ns);
+}
+
+TEST(Board, TheHostIsAtTheLinkThatLastSaidHello) {
+  World world;
+  world.ask(SYNC_HELLO_REQUEST, SYNC_HELLO);
+  EXPECT_EQ(world.self->link, 0);
+  world.drain();
+  world.messages.clear();
+
+  // At the other link nothing but a good HELLO_REQUEST counts: not a heartbeat, not a damaged one, not half of one.
+  world.link = 1;
+  const std::uint32_t heard_ms = world.self->host.heard_ms;
+  world.run(0.1, false);
+  world.send(SYNC_STATUS_REQUEST);
+  std::uint8_t wire[SYNC_MAX_WIRE];
+  sync_message hello{};
+  hello.type = SYNC_HELLO_REQUEST;
+  const std::size_t size = frame_encode_message(&hello, 0, wire);
+  std::vector<std::uint8_t> damaged(wire, wire + size);
+  damaged[size - 2] ^= 1;
+  world.send_bytes(damaged);
+  world.send_bytes({wire, wire + size / 2});
+  world.drain();
+  EXPECT_TRUE(world.messages.empty());
+  EXPECT_EQ(world.self->link, 0);
+  EXPECT_EQ(world.self->host.heard_ms, heard_ms);
+
+  // Its second half, with the first host's bytes in between: each link has its own frames. What waited for the first host
+  // is gone.
+  world.link = 0;
+  world.send(SYNC_STATUS_REQUEST);
+  world.link = 1;
+  world.send_bytes({wire + size / 2, wire + size});
+  EXPECT_EQ(world.self->link, 1);
+  world.drain();
+  ASSERT_EQ(world.messages.size(), 1u);
+  EXPECT_EQ(world.messages[0].type, SYNC_HELLO);
+  EXPECT_EQ(world.ask(SYNC_STATUS_REQUEST, SYNC_STATUS).status.link_damaged, 1u);  // of this link
 }
 
 TEST(Board, WhatItDoesNotKnowIsAFaultThatNamesIt) {
