@@ -31,6 +31,8 @@ static void pins_start(void) {
   set_pin(GPIO_B, kCamera, false);
   for (unsigned pin = 0; pin < 4u; ++pin) pin_function(GPIO_A, pin, 1);  // TIM2
   GPIO_A->speed |= 3u;
+  for (unsigned pin = 11; pin < 13u; ++pin) pin_function(GPIO_A, pin, 10);  // OTG_FS
+  GPIO_A->speed |= 15u << 22;
   for (unsigned pin = 6; pin < 8u; ++pin) pin_function(GPIO_B, pin, 7);   // USART1
   for (unsigned pin = 8; pin < 10u; ++pin) pin_function(GPIO_B, pin, 4);  // I2C1
   GPIO_B->type |= 3u << 8;                                                // open drain
@@ -41,9 +43,10 @@ static void pins_start(void) {
 }
 
 static void interrupts_start(void) {
-  static const uint8_t kUsed[] = {EDGE_INTERRUPT, LIGHT_INTERRUPT, LINK_INTERRUPT};
+  static const uint8_t kUsed[] = {EDGE_INTERRUPT, LIGHT_INTERRUPT, UART_INTERRUPT, USB_INTERRUPT};
   for (unsigned i = 0; i < sizeof kUsed; ++i) {
-    NVIC_PRIORITY[kUsed[i]] = (uint8_t)(i << 6);  // edges first: a capture must be read before the next one
+    // Edges first: a capture must be read before the next one. The others wait for each other, 8 µs at the most.
+    NVIC_PRIORITY[kUsed[i]] = i == 0u ? 0u : 64u;
     NVIC_ENABLE[kUsed[i] / 32u] = 1u << (kUsed[i] % 32u);
   }
 }
@@ -53,7 +56,7 @@ const board_facts* hal_init(void) {
   const uint32_t clock_hz = clocks_start();
   pins_start();
   edges_start();
-  link_start(clock_hz);
+  uart_start(clock_hz);
   light_start(clock_hz, kSampleHz);
   sensors_start(clock_hz);
   interrupts_start();
@@ -73,6 +76,7 @@ const board_facts* hal_init(void) {
   // Silicon always reports its internal oscillator; an emulator that models no clocks has no identity to read either.
   if ((CLOCKS->control & (uint32_t)kHsiReady) != 0u)
     for (unsigned i = 0; i < 3u; ++i) facts.serial[i] = UNIQUE_ID[i];
+  if (clocks_exact()) usb_start(facts.serial);
   return &facts;
 }
 
@@ -89,7 +93,7 @@ void hal_camera_power(bool on) {
 }
 
 uint32_t hal_overruns(void) {
-  return edges_overruns() + link_overruns() + light_overruns();
+  return edges_overruns() + uart_overruns() + light_overruns();
 }
 
 void hal_watchdog(void) {

@@ -50,6 +50,10 @@ typedef struct {
   reg key, prescaler, reload, status;
 } watchdog;
 
+typedef struct {
+  reg otg[14], core_configuration;  // TinyUSB knows the others
+} usb_general;
+
 #define GPIO_A ((gpio*)0x40020000u)
 #define GPIO_B ((gpio*)0x40020400u)
 #define GPIO_C ((gpio*)0x40020800u)
@@ -61,6 +65,7 @@ typedef struct {
 #define ADC_COMMON (*(reg*)0x40012304u)
 #define LIGHT_DMA ((dma*)0x40026400u)  // DMA2, stream 0: interrupt 56
 #define FLASH_CONTROLLER ((flash_controller*)0x40023C00u)
+#define USB_GENERAL ((usb_general*)0x50000000u)  // OTG_FS: interrupt 67
 #define CLOCKS ((clocks*)0x40023800u)
 #define WATCHDOG ((watchdog*)0x40003000u)
 #define NVIC_ENABLE ((reg*)0xE000E100u)
@@ -68,7 +73,7 @@ typedef struct {
 #define COPROCESSOR_ACCESS (*(reg*)0xE000ED88u)
 #define UNIQUE_ID ((reg*)0x1FFF7A10u)
 
-enum { EDGE_INTERRUPT = 28, LINK_INTERRUPT = 37, LIGHT_INTERRUPT = 56 };
+enum { EDGE_INTERRUPT = 28, UART_INTERRUPT = 37, LIGHT_INTERRUPT = 56, USB_INTERRUPT = 67 };
 
 static inline void interrupts_off(void) {
   __asm volatile("cpsid i" ::: "memory");

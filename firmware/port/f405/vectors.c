@@ -8,8 +8,9 @@
 extern uint32_t image_stack_top;
 
 void edge_interrupt(void);
-void link_interrupt(void);
+void uart_interrupt(void);
 void light_interrupt(void);
+void usb_interrupt(void);
 
 enum { kSystem = 16, kInterrupts = 82 };
 
@@ -26,6 +27,7 @@ __attribute__((section(".vectors"), used)) static const vector vectors[kSystem +
     [14] = hang,
     [15] = hang,
     [kSystem + EDGE_INTERRUPT] = edge_interrupt,
-    [kSystem + LINK_INTERRUPT] = link_interrupt,
+    [kSystem + UART_INTERRUPT] = uart_interrupt,
     [kSystem + LIGHT_INTERRUPT] = light_interrupt,
+    [kSystem + USB_INTERRUPT] = usb_interrupt,
 };

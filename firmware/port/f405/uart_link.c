@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
 // USART1 at 1 Mbit/s.
-#include "firmware/hal/hal.h"
 #include "firmware/port/f405/port.h"
 #include "firmware/port/f405/registers.h"
 
@@ -13,9 +12,9 @@ static volatile uint8_t ring_head;
 static volatile uint8_t ring_tail;
 static volatile uint32_t lost;
 
-void link_interrupt(void);
+void uart_interrupt(void);
 
-void link_interrupt(void) {
+void uart_interrupt(void) {
   const uint32_t status = LINK_USART->status;
   if ((status & (uint32_t)kOverrun) != 0u) ++lost;
   if ((status & ((uint32_t)kReceived | (uint32_t)kOverrun)) == 0u) return;
@@ -26,26 +25,25 @@ void link_interrupt(void) {
     ring[ring_head++] = byte;
 }
 
-void link_start(uint32_t clock_hz) {
+void uart_start(uint32_t clock_hz) {
   LINK_USART->baud = clock_hz / (uint32_t)kBaud;
   LINK_USART->control1 = 1u << 13 | 1u << 5 | 1u << 3 | 1u << 2;
 }
 
-uint32_t link_overruns(void) {
+uint32_t uart_overruns(void) {
   return lost;
 }
 
-bool hal_link_read(uint8_t link, uint8_t* byte) {
-  if (link != 0u || ring_head == ring_tail) return false;
+bool uart_link_read(uint8_t* byte) {
+  if (ring_head == ring_tail) return false;
   *byte = ring[ring_tail++];
   return true;
 }
 
-bool hal_link_ready(uint8_t link) {
-  return link == 0u && (LINK_USART->status & (uint32_t)kEmpty) != 0u;
+bool uart_link_ready(void) {
+  return (LINK_USART->status & (uint32_t)kEmpty) != 0u;
 }
 
-void hal_link_write(uint8_t link, uint8_t byte) {
-  (void)link;
+void uart_link_write(uint8_t byte) {
   LINK_USART->data = byte;
 }
