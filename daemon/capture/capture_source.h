@@ -120,6 +120,11 @@ struct CaptureOptions {
   double rate_hz = 0;        // 0: as the camera has it
   double exposure_us = 0;    // 0: as the camera has it
   std::string controls;  // V4L2, libcamera: "name=value, …" in the device's own names, before the exposure
+  // Aravis: the input that starts each exposure ("Line0"); "any": the first there is, where there is one; "off": none;
+  // empty: as the camera has it.
+  std::string trigger;
+  double trigger_rate_hz = 0;  // of whoever makes the triggers, 0: not known
+  bool ptp = false;            // Aravis: let IEEE 1588 keep the camera's clock; false: as the camera has it
   int buffers = 8;
   int packet_size = 9000;  // GigE Vision, bytes; 1400 beyond loopback without jumbo frames
   int socket_buffer_bytes = 8 << 20;
@@ -127,8 +132,8 @@ struct CaptureOptions {
   bool loop = false;  // recording
 };
 
-// source: aravis:ADDRESS | v4l2:/dev/videoN | libcamera:ID | recording:FILE | simulated:NAME (contract). Fails with usage for an unknown kind, naming what
-// is allowed.
+// source: aravis:ADDRESS | v4l2:/dev/videoN | libcamera:ID | recording:FILE | simulated:NAME (contract). Fails with usage
+// for an unknown kind, naming what is allowed.
 Result<std::unique_ptr<CaptureSource>> make_capture_source(const std::string& source,
                                                            const CaptureOptions& options);
 

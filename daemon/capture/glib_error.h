@@ -20,6 +20,9 @@ class GlibError {
     return &error_;
   }
   explicit operator bool() const { return error_ != nullptr; }
+  [[nodiscard]] bool is(GQuark domain, int code) const {
+    return g_error_matches(error_, domain, code) != FALSE;
+  }
   [[nodiscard]] const char* text() const { return error_ != nullptr ? error_->message : "no reason given"; }
 
  private:

@@ -159,7 +159,11 @@ void LibcameraSession::remark(const std::string& words) {
 
 std::optional<CaptureFault> LibcameraSession::open() {
   LibcameraManagerHold& hold = *manager_;
-  if (hold.manager == nullptr) hold = {libcamera_manager(), mono_now_ns()};
+  const std::lock_guard lock(hold.mutex);
+  if (hold.manager == nullptr) {
+    hold.manager = libcamera_manager();
+    hold.since_mono_ns = mono_now_ns();
+  }
   if (hold.manager == nullptr)
     return CaptureFault{SourceState::opening, "cannot be looked for: libcamera does not start"};
   camera_ = hold.manager->get(id_);
@@ -167,7 +171,7 @@ std::optional<CaptureFault> LibcameraSession::open() {
     std::string others;
     for (const auto& camera : hold.manager->cameras()) others += (others.empty() ? "" : ", ") + camera->id();
     // It hears of cameras that come, but does not take up each: now and then one begins anew.
-    if (mono_now_ns() - hold.since_mono_ns > kLookAnewNs) hold = {};
+    if (mono_now_ns() - hold.since_mono_ns > kLookAnewNs) hold.manager.reset();
     return CaptureFault{SourceState::no_device,
                         "is not there; libcamera sees " + (others.empty() ? "no camera" : others)};
   }
@@ -510,7 +514,8 @@ void LibcameraSession::abandon() noexcept {
   for (auto& request : requests_) static_cast<void>(request.release());
   requests_.clear();
   configuration_.reset();
-  *manager_ = {};
+  const std::lock_guard lock(manager_->mutex);
+  manager_->manager.reset();
 }
 
 void LibcameraSession::close() noexcept {

@@ -23,6 +23,7 @@ std::shared_ptr<libcamera::CameraManager> libcamera_manager();
 
 // Where a source keeps it between its sessions; empty until the first looks.
 struct LibcameraManagerHold {
+  std::mutex mutex;  // guards what follows: a session is closed while the next one opens
   std::shared_ptr<libcamera::CameraManager> manager;
   std::int64_t since_mono_ns = 0;
 };

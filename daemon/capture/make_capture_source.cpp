@@ -22,7 +22,7 @@ namespace {
 using Made = Result<std::unique_ptr<CaptureSource>>;
 
 Made make_aravis(const std::string& address, const CaptureOptions& options) {
-  return std::unique_ptr<CaptureSource>(std::make_unique<AravisSource>(address, options));
+  return make_aravis_source(address, options);
 }
 
 Made make_v4l2(const std::string& path, const CaptureOptions& options) {
@@ -82,6 +82,7 @@ Status check(const CaptureOptions& o) {
       check_range("packet_size", o.packet_size, 576, 65000),
       check_range("socket_buffer_bytes", o.socket_buffer_bytes, 65536, 1 << 30),
       check_range("speed", o.speed, 0, 1000),
+      check_range("trigger_rate_hz", o.trigger_rate_hz, 0, 100'000),
   };
   for (const Status& status : checks)
     if (!status) return status;

@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/capture/watched_source.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
-#include <limits>
 #include <utility>
 
 #include "daemon/clock.h"
@@ -17,12 +15,15 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kRetry = 200ms;       // to open a node that is missing or busy costs microseconds
+constexpr auto kRetry = 200ms;       // where a device fails at its first frame
 constexpr auto kLookAround = 500ms;  // signal and automatic exposure
 constexpr auto kTick = 100ms;        // a stall is found this late at most
 constexpr auto kFirstFrameLimit = 500ms;
 constexpr auto kSilenceMinimum = 150ms;  // below, a busy host would pass for a stalled camera
 constexpr auto kReopenMinimum = 1s;
+// A live device lets go in a tenth of a second; a dead one is not waited for.
+constexpr auto kCloseWait = 300ms;
+constexpr auto kCloseWaitAtEnd = 800ms;  // whoever opens it next finds it free
 
 struct Token {
   static void* of(std::size_t buffer) { return reinterpret_cast<void*>(buffer); }
@@ -39,6 +40,8 @@ const char* words(SessionFrame::Stamp stamp) {
       return "stamped at the start of the exposure";
     case SessionFrame::Stamp::end_of_frame:
       return "stamped at the end of the frame";
+    case SessionFrame::Stamp::mapped:
+      return "stamped by its own clock";
     case SessionFrame::Stamp::none:
       break;
   }
@@ -46,11 +49,15 @@ const char* words(SessionFrame::Stamp stamp) {
 }
 
 std::string summary(const SessionSettings& s, SessionFrame::Stamp stamp) {
-  std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), ": %d×%d %s from %s, %.4g Hz, exposure %.4g ms, %s", s.format.width,
-                s.format.height, std::string(name(s.format.pixel_format)).c_str(), s.device_format.c_str(),
-                s.rate_hz, s.exposure_us * 1e-3, words(stamp));
-  return s.name + text.data() + (s.remark.empty() ? "" : "; " + s.remark);
+  const std::string pixel_format(name(s.format.pixel_format));
+  std::string out = fmt::format("{}: {}×{} {}", s.name, s.format.width, s.format.height, pixel_format);
+  if (!s.device_format.empty() && s.device_format != pixel_format) out += " from " + s.device_format;
+  out += fmt::format(", {:.4g} Hz{}, exposure {:.4g} ms", s.rate_hz, s.free_running ? "" : " at most",
+                     s.exposure_us * 1e-3);
+  if (!s.free_running) out += ", " + (s.trigger.empty() ? std::string("triggered") : s.trigger);
+  out += std::string(", ") + words(stamp);
+  if (!s.clock.empty()) out += " (" + s.clock + ")";
+  return s.remark.empty() ? out : out + "; " + s.remark;
 }
 
 }  // namespace
@@ -63,6 +70,7 @@ WatchedSource::WatchedSource(std::string kind, std::string what, Connect connect
 
 WatchedSource::~WatchedSource() {
   stop();
+  for (const Retired& retired : retired_) retired.closed.wait();
 }
 
 Status WatchedSource::start() {
@@ -87,6 +95,7 @@ void WatchedSource::stop() noexcept {
   }
   wake_.notify_all();
   thread_.join();
+  wait_for_closing(kCloseWaitAtEnd);
   const std::lock_guard lock(mutex_);
   state_ = SourceState::no_device;
   message_ = "stopped";
@@ -135,30 +144,42 @@ void WatchedSource::run() {
 }
 
 std::unique_ptr<CaptureSession> WatchedSource::connect() {
-  do {
+  for (;;) {
     forget_returned();
     auto session = make_session_();
-    auto fault = session->open();
+    auto fault = session->find();
+    if (!fault) {
+      // What is there is let go before it is opened anew; while it is not there, nobody waits.
+      wait_for_closing(kCloseWait);
+      fault = session->open();
+    }
     if (!fault) fault = session->start();
     if (fault) {
-      session->close();
+      close_in_background(std::move(session));
       report(fault->state, what_ + " " + fault->message);
+      if (!pause(fault->retry)) return nullptr;
       continue;
     }
-    const std::lock_guard lock(mutex_);
-    if (stopping_) return nullptr;
-    current_ = session.get();
-    settings_ = session->settings();
-    sequence_.reconnected();
-    first_frame_ = false;
-    has_signal_ = true;
-    last_frame_ = Clock::now();
-    period_ = std::chrono::nanoseconds(
-        settings_.rate_hz > 0 ? static_cast<std::int64_t>(1e9 / settings_.rate_hz) : 1'000'000'000);
-    if (state_ == SourceState::no_device) state_ = SourceState::opening;
-    return session;
-  } while (pause(kRetry));
-  return nullptr;
+    if (begin(*session)) return session;
+    close_in_background(std::move(session));
+    return nullptr;
+  }
+}
+
+// False when stopping.
+bool WatchedSource::begin(CaptureSession& session) {
+  const std::lock_guard lock(mutex_);
+  if (stopping_) return false;
+  current_ = &session;
+  settings_ = session.settings();
+  sequence_.reconnected();
+  first_frame_ = false;
+  has_signal_ = true;
+  last_frame_ = Clock::now();
+  period_ = std::chrono::nanoseconds(
+      settings_.rate_hz > 0 ? static_cast<std::int64_t>(1e9 / settings_.rate_hz) : 1'000'000'000);
+  if (state_ == SourceState::no_device) state_ = SourceState::opening;
+  return true;
 }
 
 // Until the session is over.
@@ -175,36 +196,48 @@ void WatchedSource::watch(CaptureSession& session) {
       case CaptureSession::Event::nothing:
         break;
       case CaptureSession::Event::source_changed:
-        return report(SourceState::wrong_format, what_ + " has another picture size now; opening it again");
+        return report(SourceState::wrong_format,
+                      what_ + " sends another size or format now; opening it again");
       case CaptureSession::Event::broken: {
         const CaptureFault fault = session.fault();
         return report(fault.state, what_ + " " + fault.message);
       }
     }
     std::chrono::nanoseconds silence{0}, limit{0};
-    bool flowing = false, signal = true;
+    bool has_frame = false, flowing = false, signal = true;
     {
       const std::lock_guard lock(mutex_);
       if (stopping_) return;
       silence = Clock::now() - last_frame_;
       limit = silence_limit();
-      flowing = first_frame_ && silence < limit;
+      has_frame = first_frame_;
+      flowing = has_frame && silence < limit;
       signal = has_signal_;
     }
+    const SessionSettings& settings = session.settings();
     if (Clock::now() - looked > kLookAround) {
       looked = Clock::now();
+      const std::string clock = settings.clock;
       look_around(session);
+      said = said && clock == settings.clock;
       continue;
     }
     if (!signal) {
       said = false;
       continue;
     }
-    if (flowing) {
-      silent_sessions_ = 0;
-      if (!said) report(SourceState::streaming, summary(session.settings(), stamp_));
+    if (flowing) silent_sessions_ = 0;
+    if (!settings.free_running && !has_frame) {
+      report(SourceState::stalled, what_ + " has sent no frame yet: it is " +
+                                       (settings.trigger.empty() ? "triggered" : settings.trigger));
+      continue;
+    }
+    if (flowing || !settings.free_running) {
+      if (!said) report(SourceState::streaming, summary(settings, stamp_));
       said = true;
-    } else if (silence >= limit) {
+      continue;
+    }
+    if (silence >= limit) {
       said = false;
       report(SourceState::stalled, what_ + " is there but sends no frames");
     }
@@ -272,13 +305,14 @@ FrameInfo WatchedSource::frame_info(const SessionFrame& frame, std::uint64_t seq
   const auto half_exposure = static_cast<std::int64_t>(frame.exposure_us * 500);
   std::int64_t middle = frame.received_mono_ns - half_exposure;
   if (frame.stamp == SessionFrame::Stamp::start_of_exposure) middle = frame.t_stamp_mono_ns + half_exposure;
-  if (frame.stamp == SessionFrame::Stamp::end_of_frame) middle = frame.t_stamp_mono_ns - half_exposure;
+  if (frame.stamp == SessionFrame::Stamp::end_of_frame || frame.stamp == SessionFrame::Stamp::mapped)
+    middle = frame.t_stamp_mono_ns - half_exposure;
   info.capture_mono_ns = std::max(std::min(middle, frame.received_mono_ns), last_capture_ns_ + 1);
   last_capture_ns_ = info.capture_mono_ns;
   info.capture_utc_ns = info.capture_mono_ns + (utc_now_ns() - mono_now_ns());
   info.exposure_us = frame.exposure_us;
   info.gain_db = frame.gain_db;
-  info.temperature_c = std::numeric_limits<float>::quiet_NaN();
+  info.temperature_c = frame.temperature_c;
   return info;
 }
 
@@ -291,13 +325,24 @@ void WatchedSource::retire(std::unique_ptr<CaptureSession> session) {
     if (left.session != nullptr) ++counters_.skipped;
   }
   if (left.session != nullptr) left.session->give_back(left.frame.buffer);
-  session->close();
-  retired_.push_back(std::move(session));
-  forget_returned();
+  close_in_background(std::move(session));
+}
+
+void WatchedSource::close_in_background(std::unique_ptr<CaptureSession> session) {
+  CaptureSession* at = session.get();
+  retired_.push_back({std::move(session), std::async(std::launch::async, [at] { at->close(); })});
+}
+
+// All together until then.
+void WatchedSource::wait_for_closing(std::chrono::milliseconds limit) {
+  const auto until = Clock::now() + limit;
+  for (const Retired& retired : retired_) retired.closed.wait_until(until);
 }
 
 void WatchedSource::forget_returned() {
-  std::erase_if(retired_, [](const auto& session) { return session->all_returned(); });
+  std::erase_if(retired_, [](const Retired& retired) {
+    return retired.closed.wait_for(0s) == std::future_status::ready && retired.session->all_returned();
+  });
 }
 
 std::chrono::nanoseconds WatchedSource::silence_limit() const {
@@ -307,7 +352,8 @@ std::chrono::nanoseconds WatchedSource::silence_limit() const {
 
 SourceState WatchedSource::state() const noexcept {
   const std::lock_guard lock(mutex_);
-  const bool silent = current_ != nullptr && has_signal_ && Clock::now() - last_frame_ > silence_limit();
+  const bool silent = current_ != nullptr && has_signal_ && settings_.free_running &&
+                      Clock::now() - last_frame_ > silence_limit();
   return state_ == SourceState::streaming && silent ? SourceState::stalled : state_;
 }
 

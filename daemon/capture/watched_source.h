@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -20,16 +21,17 @@ namespace lightwell {
 
 // A device that is opened, watched and opened again, through one CaptureSession after another. One thread does all work
 // with it: opens it, takes its frames, watches signal and silence; it puts the freshest frame into one slot, and wait
-// takes it from there.
-// Times: the device's, where it stamps in CLOCK_MONOTONIC: the start of the exposure, or else the end of the frame,
-// which counts as the end of the exposure since read-out is not known; of reception where it stamps otherwise.
+// takes it from there. Sessions are closed on threads of their own: one that has failed may take seconds.
+// Times: the device's, where it stamps in CLOCK_MONOTONIC or its clock is mapped to it: the start of the exposure, or
+// else the end of the frame, which counts as the end of the exposure since read-out is not known; of reception where it
+// stamps otherwise.
 class WatchedSource final : public CaptureSource {
  public:
   using Connect = std::function<std::unique_ptr<CaptureSession>()>;
 
   // kind: "v4l2"; what: "/dev/video0"; refusal: why start fails, where trying cannot help
   WatchedSource(std::string kind, std::string what, Connect connect, Status refusal = {});
-  ~WatchedSource() override;
+  ~WatchedSource() override;  // waits for what stop did not: up to 8 s where a camera is dead
 
   Status start() override;
   FrameLease wait(std::chrono::milliseconds timeout) noexcept override;
@@ -46,14 +48,21 @@ class WatchedSource final : public CaptureSource {
     SessionFrame frame;
     FrameInfo info;
   };
+  struct Retired {
+    std::unique_ptr<CaptureSession> session;
+    std::future<void> closed;
+  };
 
   void run();
   std::unique_ptr<CaptureSession> connect();
+  bool begin(CaptureSession& session);
   void watch(CaptureSession& session);
   void look_around(CaptureSession& session);
   void frame_done(CaptureSession& session, const SessionFrame& frame) noexcept;
   FrameInfo frame_info(const SessionFrame& frame, std::uint64_t sequence) noexcept;
   void retire(std::unique_ptr<CaptureSession> session);
+  void close_in_background(std::unique_ptr<CaptureSession> session);
+  void wait_for_closing(std::chrono::milliseconds limit);
   void forget_returned();
   void report(SourceState state, const std::string& message);
   bool pause(std::chrono::milliseconds time);
@@ -63,7 +72,7 @@ class WatchedSource final : public CaptureSource {
   const Connect make_session_;
   const Status refusal_;
   std::thread thread_;
-  std::vector<std::unique_ptr<CaptureSession>> retired_;  // of the thread: sessions whose frames are out
+  std::vector<Retired> retired_;  // of the thread: sessions that are closing, or whose frames are out
   std::int64_t last_capture_ns_ = 0;
   FrameSequence sequence_;
   int silent_sessions_ = 0;  // one after another
