@@ -17,7 +17,6 @@ constexpr std::int64_t kPingNs =
 constexpr std::int64_t kStateNs = 500'000'000;     // LED
 constexpr std::int64_t kHelloNs = 500'000'000;     // until it is answered
 constexpr std::int64_t kSilentNs = 1'000'000'000;  // 40 pings unanswered
-constexpr auto kRetry = std::chrono::milliseconds(300);
 constexpr auto kTurn = std::chrono::milliseconds(10);
 
 sync_message message_of(sync_type type) {
@@ -34,8 +33,9 @@ std::string hello_text(const sync_hello& hello) {
 }  // namespace
 
 SyncBoard::SyncBoard(BoardOptions options, StrobeRing& strobes)
-    : options_(std::move(options)), strobes_(strobes) {
-  if (!options_.open) options_.open = [address = options_.address] { return open_sync_link(address); };
+    : options_(std::move(options)),
+      port_(options_.open ? make_polled_port(options_.open) : make_sync_port(options_.address)),
+      strobes_(strobes) {
   set_state(BoardState::no_device, "not looked for yet");
   thread_ = std::thread([this] { run(); });
 }
@@ -64,15 +64,18 @@ void SyncBoard::set_state(BoardState state, const std::string& description) {
 void SyncBoard::run() {
   pthread_setname_np(pthread_self(), "sync-board");
   while (!stopping_) {
-    auto link = options_.open();
-    Status ended = link ? converse(**link) : Status(link.error());
+    const Status ended = meet();
     agreed_ = false;
     // What a board of another version said stays to be read.
     if (!ended && view().state != BoardState::wrong_firmware)
       set_state(BoardState::no_device, ended.error().message);
-    for (auto slept = std::chrono::milliseconds(0); slept < kRetry && !stopping_; slept += kTurn)
-      std::this_thread::sleep_for(kTurn);
+    while (!stopping_ && !port_->wait(kTurn)) continue;
   }
+}
+
+Status SyncBoard::meet() {
+  const auto link = port_->open();
+  return link ? converse(**link) : Status(link.error());
 }
 
 Status SyncBoard::converse(SyncLink& link) {

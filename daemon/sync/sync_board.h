@@ -34,7 +34,7 @@ struct BoardOptions {
   // A press of the record button; called on the board's thread.
   std::function<void(sync_press)> on_button;
   // Opens the link; empty: as the address says.
-  std::function<Result<std::unique_ptr<SyncLink>>()> open;
+  OpenSyncLink open;
 };
 
 // The daemon's side of the sync board, on a thread of its own: connects, and again whenever the board comes back; maps its
@@ -53,6 +53,7 @@ class SyncBoard {
 
  private:
   void run();
+  Status meet();
   // Until the board is gone or stops speaking. The link is good for one connection.
   Status converse(SyncLink& link);
   Status send(SyncLink& link, const sync_message& message);
@@ -64,6 +65,7 @@ class SyncBoard {
   void set_state(BoardState state, const std::string& description);
 
   BoardOptions options_;
+  std::unique_ptr<SyncPort> port_;
   StrobeRing& strobes_;
   std::atomic<sync_host> host_state_{SYNC_HOST_IDLE};
   std::atomic<bool> stopping_{false};

@@ -2,7 +2,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/sync/sync_link.h"
 
+#include <algorithm>
+#include <thread>
+#include <utility>
+
 namespace lightwell {
+namespace {
+
+constexpr auto kRetry = std::chrono::milliseconds(300);
+
+class PolledPort final : public SyncPort {
+ public:
+  explicit PolledPort(OpenSyncLink open) : open_(std::move(open)) {}
+
+  Result<std::unique_ptr<SyncLink>> open() override {
+    waited_ = std::chrono::milliseconds(0);
+    return open_();
+  }
+  bool wait(std::chrono::milliseconds most) override {
+    std::this_thread::sleep_for(most);
+    waited_ += most;
+    return waited_ >= kRetry;
+  }
+
+ private:
+  OpenSyncLink open_;
+  std::chrono::milliseconds waited_{0};
+};
+
+}  // namespace
 
 Result<SyncAddress> parse_sync_address(const std::string& text) {
   if (text == "usb") return SyncAddress{SyncAddress::Kind::usb, ""};
@@ -16,9 +44,17 @@ Result<SyncAddress> parse_sync_address(const std::string& text) {
   return Error{ErrorKind::usage, "board address '" + text + "': allowed usb, usb:SERIAL, serial:/dev/DEVICE"};
 }
 
+std::unique_ptr<SyncPort> make_polled_port(OpenSyncLink open) {
+  return std::make_unique<PolledPort>(std::move(open));
+}
+
+std::unique_ptr<SyncPort> make_sync_port(const SyncAddress& address) {
+  if (address.kind == SyncAddress::Kind::usb) return make_usb_port(address.place);
+  return make_polled_port([path = address.place] { return open_serial_link(path); });
+}
+
 Result<std::unique_ptr<SyncLink>> open_sync_link(const SyncAddress& address) {
-  return address.kind == SyncAddress::Kind::usb ? open_usb_link(address.place)
-                                                : open_serial_link(address.place);
+  return make_sync_port(address)->open();
 }
 
 }  // namespace lightwell

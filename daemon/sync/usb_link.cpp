@@ -1,161 +1,162 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include <libusb.h>
+#include "daemon/sync/usb_link.h"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
-#include <optional>
 #include <utility>
-
-#include "daemon/sync/sync_link.h"
-#include "interface/sync_usb.h"
 
 namespace lightwell {
 namespace {
+
+using std::chrono::milliseconds;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kPatience = milliseconds(1000);  // SyncLink::write
+
+void LIBUSB_CALL take_back(libusb_transfer* transfer) {
+  *static_cast<int*>(transfer->user_data) = 1;
+}
+
+Error ended_badly(const char* doing, libusb_transfer_status status) {
+  const char* why = status == LIBUSB_TRANSFER_NO_DEVICE   ? "it is gone"
+                    : status == LIBUSB_TRANSFER_TIMED_OUT ? "it has taken nothing for a second"
+                    : status == LIBUSB_TRANSFER_OVERFLOW
+                        ? "it sends more than a packet at once"
+                        : "the transfer failed; it is gone, or the cable is bad";
+  return {ErrorKind::failed, std::string("sync board: ") + doing + ": " + why};
+}
+
+}  // namespace
 
 Error usb_error(const std::string& what, int code) {
   return {ErrorKind::failed, "sync board: " + what + ": " + libusb_strerror(static_cast<libusb_error>(code))};
 }
 
-struct ContextEnd {
-  void operator()(libusb_context* context) const { libusb_exit(context); }
-};
-using Context = std::unique_ptr<libusb_context, ContextEnd>;
-struct HandleEnd {
-  void operator()(libusb_device_handle* handle) const { libusb_close(handle); }
-};
-using Handle = std::unique_ptr<libusb_device_handle, HandleEnd>;
-
-// Endpoint numbers are the gadget's to choose: they stand in the descriptor.
-struct BoardInterface {
-  std::uint8_t number = 0, in = 0, out = 0;
-  std::size_t packet = 64;  // bytes; reads are whole multiples
-};
-
-std::optional<BoardInterface> board_interface(libusb_device* device) {
-  libusb_config_descriptor* configuration = nullptr;
-  if (libusb_get_active_config_descriptor(device, &configuration) != 0) return std::nullopt;
-  std::optional<BoardInterface> found;
-  for (int i = 0; i < configuration->bNumInterfaces && !found; ++i) {
-    const libusb_interface& of_device = configuration->interface[i];
-    if (of_device.num_altsetting < 1) continue;
-    const libusb_interface_descriptor& setting = of_device.altsetting[0];
-    if (setting.bInterfaceClass != SYNC_USB_CLASS || setting.bInterfaceSubClass != SYNC_USB_SUBCLASS ||
-        setting.bInterfaceProtocol != SYNC_USB_PROTOCOL)
-      continue;
-    BoardInterface board;
-    board.number = setting.bInterfaceNumber;
-    for (int e = 0; e < setting.bNumEndpoints; ++e) {
-      const libusb_endpoint_descriptor& endpoint = setting.endpoint[e];
-      if ((endpoint.bmAttributes & LIBUSB_TRANSFER_TYPE_MASK) != LIBUSB_TRANSFER_TYPE_BULK) continue;
-      if ((endpoint.bEndpointAddress & LIBUSB_ENDPOINT_IN) != 0) {
-        board.in = endpoint.bEndpointAddress;
-        board.packet = endpoint.wMaxPacketSize;
-      } else {
-        board.out = endpoint.bEndpointAddress;
-      }
-    }
-    if (board.in != 0 && board.out != 0 && board.packet > 0) found = board;
-  }
-  libusb_free_config_descriptor(configuration);
-  return found;
+UsbLink::UsbLink(UsbContext context, UsbHandle handle, const UsbBoardInterface& board)
+    : context_(std::move(context)), handle_(std::move(handle)), board_(board) {
+  // One packet each: a transfer of more would wait for a packet that is not full.
+  for (Transfer& transfer : in_) transfer.bytes.resize(board_.packet);
 }
 
-std::string serial_of(libusb_device_handle* handle, std::uint8_t index) {
-  std::array<unsigned char, 128> text{};
-  const int size = index == 0 ? 0
-                              : libusb_get_string_descriptor_ascii(handle, index, text.data(),
-                                                                   static_cast<int>(text.size()));
-  return {reinterpret_cast<const char*>(text.data()), static_cast<std::size_t>(std::max(size, 0))};
+UsbLink::~UsbLink() {
+  call_back(in_);
+  call_back(out_);
+  libusb_release_interface(handle_.get(), board_.number);
 }
 
-class UsbLink final : public SyncLink {
- public:
-  UsbLink(Context context, Handle handle, const BoardInterface& board)
-      : context_(std::move(context)), handle_(std::move(handle)), board_(board) {}
-  ~UsbLink() override { libusb_release_interface(handle_.get(), board_.number); }
-
-  Result<std::size_t> read(std::span<std::uint8_t> buffer, std::chrono::milliseconds timeout) override {
-    if (at_ == size_) {
-      int size = 0;
-      // A transfer shorter than what a board sends would be an overflow: whole packets.
-      const std::size_t room = received_.size() / board_.packet * board_.packet;
-      const int code =
-          libusb_bulk_transfer(handle_.get(), board_.in, received_.data(), static_cast<int>(room), &size,
-                               static_cast<unsigned>(std::max<long>(timeout.count(), 1)));
-      if (code == LIBUSB_ERROR_PIPE) {
-        libusb_clear_halt(handle_.get(), board_.in);
-        return std::size_t{0};
-      }
-      if (code != 0 && code != LIBUSB_ERROR_TIMEOUT && code != LIBUSB_ERROR_INTERRUPTED)
-        return usb_error("reading", code);
-      at_ = 0;
-      size_ = static_cast<std::size_t>(size);  // a timeout may have brought some
-    }
-    const std::size_t taken = std::min(buffer.size(), size_ - at_);
-    std::copy_n(received_.begin() + static_cast<std::ptrdiff_t>(at_), taken, buffer.begin());
-    at_ += taken;
-    return taken;
-  }
-
-  Status write(std::span<const std::uint8_t> bytes) override {
-    while (!bytes.empty()) {
-      int size = 0;
-      const int code =
-          libusb_bulk_transfer(handle_.get(), board_.out, const_cast<std::uint8_t*>(bytes.data()),
-                               static_cast<int>(bytes.size()), &size, 1000);
-      bytes = bytes.subspan(static_cast<std::size_t>(size));
-      if (code == LIBUSB_ERROR_PIPE) libusb_clear_halt(handle_.get(), board_.out);
-      if (code != 0) return usb_error("writing", code);
-    }
-    return {};
-  }
-
- private:
-  Context context_;
-  Handle handle_;
-  BoardInterface board_;
-  std::array<std::uint8_t, 4096> received_{};
-  std::size_t at_ = 0, size_ = 0;
-};
-
-Result<std::unique_ptr<SyncLink>> claim(Context context, Handle handle, const BoardInterface& board) {
-  if (const int code = libusb_claim_interface(handle.get(), board.number); code != 0)
-    return usb_error(code == LIBUSB_ERROR_BUSY ? "another program uses it" : "claiming it", code);
-  return std::unique_ptr<SyncLink>(std::make_unique<UsbLink>(std::move(context), std::move(handle), board));
+Status UsbLink::start() {
+  for (Transfer& transfer : in_)
+    if (Status submitted = submit(transfer, board_.in); !submitted) return submitted;
+  return {};
 }
 
-}  // namespace
+Status UsbLink::submit(Transfer& transfer, std::uint8_t endpoint) {
+  const bool to_board = endpoint == board_.out;
+  libusb_fill_bulk_transfer(transfer.usb.get(), handle_.get(), endpoint, transfer.bytes.data(),
+                            static_cast<int>(transfer.bytes.size()), take_back, &transfer.ended,
+                            to_board ? static_cast<unsigned>(kPatience.count()) : 0);
+  // A board that asked for more than a packet must not wait for the rest of a full one.
+  if (to_board) transfer.usb->flags = LIBUSB_TRANSFER_ADD_ZERO_PACKET;
+  transfer.ended = 0;
+  const int code = libusb_submit_transfer(transfer.usb.get());
+  if (code == 0) return {};
+  transfer.ended = 1;
+  return code == LIBUSB_ERROR_NO_DEVICE ? Status(Error{ErrorKind::failed, "sync board: it is gone"})
+                                        : Status(usb_error("submitting a transfer", code));
+}
 
-Result<std::unique_ptr<SyncLink>> open_usb_link(const std::string& serial) {
-  libusb_context* made = nullptr;
-  if (const int code = libusb_init(&made); code != 0) return usb_error("USB is not to be had", code);
-  Context context(made);
-  libusb_device** devices = nullptr;
-  const ssize_t count = libusb_get_device_list(context.get(), &devices);
-  if (count < 0) return usb_error("listing USB devices", static_cast<int>(count));
-  const auto free_list = [](libusb_device** list) { libusb_free_device_list(list, 1); };
-  const std::unique_ptr<libusb_device*, decltype(free_list)> list(devices, free_list);
-  std::optional<Error> refused;
-  for (ssize_t i = 0; i < count; ++i) {
-    const auto board = board_interface(devices[i]);
-    if (!board) continue;
-    libusb_device_descriptor descriptor{};
-    libusb_get_device_descriptor(devices[i], &descriptor);
-    libusb_device_handle* opened = nullptr;
-    if (const int code = libusb_open(devices[i], &opened); code != 0) {
-      refused = usb_error(
-          code == LIBUSB_ERROR_ACCESS ? "no right to use it; a udev rule must give it" : "opening it", code);
+void UsbLink::wait_for(Transfer& transfer, milliseconds timeout) {
+  timeval time{timeout.count() / 1000, timeout.count() % 1000 * 1000};
+  libusb_handle_events_timeout_completed(context_.get(), &time, &transfer.ended);
+}
+
+template <std::size_t N>
+void UsbLink::call_back(std::array<Transfer, N>& transfers) {
+  for (Transfer& transfer : transfers)
+    if (transfer.ended == 0) libusb_cancel_transfer(transfer.usb.get());
+  for (Transfer& transfer : transfers)
+    while (transfer.ended == 0) wait_for(transfer, kPatience);
+}
+
+// Of a halted endpoint no transfer may be on its way when the halt is cleared: both ends begin with the same data toggle.
+Status UsbLink::resume_in() {
+  call_back(in_);
+  if (const int code = libusb_clear_halt(handle_.get(), board_.in); code != 0)
+    return usb_error("clearing a halt", code);
+  next_in_ = taken_ = 0;
+  return start();
+}
+
+Status UsbLink::resume_out() {
+  call_back(out_);
+  if (const int code = libusb_clear_halt(handle_.get(), board_.out); code != 0)
+    return usb_error("clearing a halt", code);
+  // Part of the first may have arrived: a zero ends what it was, and all of it goes out again.
+  std::vector<std::uint8_t>& first = out_[oldest_out_].bytes;
+  first.insert(first.begin(), 0);
+  for (std::size_t i = 0; i < unsent_; ++i)
+    if (Status submitted = submit(out_[(oldest_out_ + i) % kOut], board_.out); !submitted) return submitted;
+  return {};
+}
+
+Status UsbLink::take_sent() {
+  while (unsent_ > 0 && out_[oldest_out_].ended != 0) {
+    const libusb_transfer_status status = out_[oldest_out_].usb->status;
+    if (status == LIBUSB_TRANSFER_STALL) return resume_out();
+    if (status != LIBUSB_TRANSFER_COMPLETED) return ended_badly("writing", status);
+    oldest_out_ = (oldest_out_ + 1) % kOut;
+    --unsent_;
+  }
+  return {};
+}
+
+Result<std::size_t> UsbLink::read(std::span<std::uint8_t> buffer, milliseconds timeout) {
+  if (Status sent = take_sent(); !sent) return sent.error();
+  const auto deadline = Clock::now() + timeout;
+  std::size_t size = 0;
+  for (;;) {
+    Transfer& next = in_[next_in_];
+    if (next.ended == 0) {
+      const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now());
+      if (size > 0 || left <= milliseconds(0)) return size;
+      wait_for(next, left);
       continue;
     }
-    Handle handle(opened);
-    if (!serial.empty() && serial_of(opened, descriptor.iSerialNumber) != serial) continue;
-    return claim(std::move(context), std::move(handle), *board);
+    if (next.usb->status == LIBUSB_TRANSFER_STALL) {
+      if (size > 0) return size;
+      if (Status resumed = resume_in(); !resumed) return resumed.error();
+      continue;
+    }
+    if (next.usb->status != LIBUSB_TRANSFER_COMPLETED) {
+      if (size > 0) return size;  // what came before it ended; the next call says why
+      return ended_badly("reading", next.usb->status);
+    }
+    const auto arrived =
+        std::span(next.bytes).first(static_cast<std::size_t>(next.usb->actual_length)).subspan(taken_);
+    const std::size_t taken = std::min(arrived.size(), buffer.size() - size);
+    std::copy_n(arrived.begin(), taken, buffer.begin() + static_cast<std::ptrdiff_t>(size));
+    size += taken;
+    taken_ += taken;
+    if (taken < arrived.size()) return size;
+    taken_ = 0;
+    next_in_ = (next_in_ + 1) % kIn;
+    if (Status submitted = submit(next, board_.in); !submitted) return submitted.error();
   }
-  if (refused) return *refused;
-  return Error{ErrorKind::failed,
-               serial.empty() ? "no sync board on USB" : "no sync board " + serial + " on USB"};
+}
+
+Status UsbLink::write(std::span<const std::uint8_t> bytes) {
+  const auto deadline = Clock::now() + kPatience;
+  for (;;) {
+    if (Status sent = take_sent(); !sent) return sent;
+    if (unsent_ < kOut) break;
+    if (Clock::now() >= deadline) return ended_badly("writing", LIBUSB_TRANSFER_TIMED_OUT);
+    wait_for(out_[oldest_out_], milliseconds(50));
+  }
+  Transfer& free = out_[(oldest_out_ + unsent_) % kOut];
+  free.bytes.assign(bytes.begin(), bytes.end());
+  if (Status submitted = submit(free, board_.out); !submitted) return submitted;
+  ++unsent_;
+  return {};
 }
 
 }  // namespace lightwell

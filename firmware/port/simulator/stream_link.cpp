@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/port/simulator/link.h"
+#include "firmware/port/simulator/stream_link.h"
 
 #include <fcntl.h>
 #include <pty.h>
@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
-#include <utility>
 
 namespace lightwell::sync_simulator {
 
@@ -24,7 +23,7 @@ void make_nonblocking(int fd) {
 
 }  // namespace
 
-Link Link::terminal() {
+std::unique_ptr<StreamLink> StreamLink::terminal() {
   int own = -1, other = -1;
   char name[128];
   termios raw{};
@@ -32,30 +31,22 @@ Link Link::terminal() {
   if (openpty(&own, &other, name, &raw, nullptr) != 0)
     throw std::runtime_error(std::string("no pseudo-terminal: ") + std::strerror(errno));
   make_nonblocking(own);
-  Link link(own, own, other);
-  link.path_ = name;
-  return link;
+  return std::unique_ptr<StreamLink>(new StreamLink(own, own, other, name));
 }
 
-Link Link::standard() {
+std::unique_ptr<StreamLink> StreamLink::standard() {
   make_nonblocking(STDIN_FILENO);
   make_nonblocking(STDOUT_FILENO);
-  return {STDIN_FILENO, STDOUT_FILENO, -1};
+  return std::unique_ptr<StreamLink>(new StreamLink(STDIN_FILENO, STDOUT_FILENO, -1, ""));
 }
 
-Link::Link(Link&& other) noexcept
-    : in_(other.in_),
-      out_(other.out_),
-      held_(std::exchange(other.held_, -1)),
-      path_(std::move(other.path_)) {}
-
-Link::~Link() {
+StreamLink::~StreamLink() {
   if (held_ < 0) return;
   close(held_);
   close(in_);
 }
 
-bool Link::move(std::deque<std::uint8_t>& from_host, std::deque<std::uint8_t>& to_host) {
+bool StreamLink::move(std::deque<std::uint8_t>& from_host, std::deque<std::uint8_t>& to_host) {
   std::uint8_t bytes[4096];
   const ssize_t got = read(in_, bytes, sizeof bytes);
   if (got == 0 && held_ < 0) return false;
