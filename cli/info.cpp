@@ -88,28 +88,31 @@ void print_json(const std::string& file, const Contents& found) {
   const FrameFormat& format = found.header.format;
   const nlohmann::ordered_json calibration_id =
       found.calibration_id.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(found.calibration_id);
-  const nlohmann::ordered_json json = {{"schema", "lightwell.take/1"},
-                                       {"file", file},
-                                       {"frames", found.frames},
-                                       {"size", {format.width, format.height}},
-                                       {"format", name(format.pixel_format)},
-                                       {"codec", name(found.header.codec)},
-                                       {"rate_hz", found.header.rate_hz},
-                                       {"duration_s", duration_s(found)},
-                                       {"first_utc", utc_text(found.first.capture_utc_ns)},
-                                       {"last_utc", utc_text(found.last.capture_utc_ns)},
-                                       {"first_mono_ns", found.first.capture_mono_ns},
-                                       {"last_mono_ns", found.last.capture_mono_ns},
-                                       {"first_sequence", found.first.sequence},
-                                       {"last_sequence", found.last.sequence},
-                                       {"lost_frames", found.lost},
-                                       {"exposure_us", found.first.exposure_us},
-                                       {"source", found.header.source},
-                                       {"start_utc", utc_text(found.header.start_utc_ns)},
-                                       {"calibration_id", calibration_id},
-                                       {"complete", found.complete},
-                                       {"damage", found.damage},
-                                       {"bytes", found.bytes}};
+  const nlohmann::ordered_json json = {
+      {"schema", "lightwell.take/1"},
+      {"file", file},
+      {"frames", found.frames},
+      {"size", {format.width, format.height}},
+      {"format", name(format.pixel_format)},
+      {"codec", name(found.header.codec)},
+      {"rate_hz", found.header.rate_hz},
+      {"duration_s", duration_s(found)},
+      {"first_utc", utc_text(found.first.capture_utc_ns)},
+      {"last_utc", utc_text(found.last.capture_utc_ns)},
+      {"first_mono_ns", found.first.capture_mono_ns},
+      {"last_mono_ns", found.last.capture_mono_ns},
+      {"first_sequence", found.first.sequence},
+      {"last_sequence", found.last.sequence},
+      {"lost_frames", found.lost},
+      {"timecode",
+       found.first.timecode ? nlohmann::ordered_json(timecode_text(*found.first.timecode)) : nullptr},
+      {"exposure_us", found.first.exposure_us},
+      {"source", found.header.source},
+      {"start_utc", utc_text(found.header.start_utc_ns)},
+      {"calibration_id", calibration_id},
+      {"complete", found.complete},
+      {"damage", found.damage},
+      {"bytes", found.bytes}};
   // Text from the camera or the file's name may be any bytes.
   std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
@@ -125,6 +128,8 @@ void print_text(const std::string& file, const Contents& found) {
   std::printf("duration     %.3f s at %g Hz\n", duration_s(found), found.header.rate_hz);
   std::printf("taken        %s to %s\n", utc_text(found.first.capture_utc_ns).c_str(),
               utc_text(found.last.capture_utc_ns).c_str());
+  if (found.first.timecode)
+    std::printf("timecode     from %s\n", timecode_text(*found.first.timecode).c_str());
   std::printf("source       %s\n", found.header.source.empty() ? "unknown" : found.header.source.c_str());
   std::printf("calibration  %s\n", found.calibration_id.empty() ? "none" : found.calibration_id.c_str());
   std::printf("complete     %s\n", found.complete ? "yes" : "no");

@@ -29,6 +29,12 @@ std::string alarm_for(const DaemonStatus& status) {
     return fmt::format("Light is {:.1f} s old", status.frame_age_ms / 1000);
   if (status.board.state == BoardState::no_device || status.board.state == BoardState::wrong_firmware)
     return fmt::format("Sync board: {} ({})", name(status.board.state), status.board.description);
+  if (const auto& scale = status.board.photodiode_check; scale && scale->differs)
+    return fmt::format(
+        "Scale: camera and photodiode differ by a factor of {:.2f} ({:.0f} and {:.0f} lx); is the dome "
+        "clean, the aperture "
+        "as calibrated?",
+        scale->ratio, scale->camera_lx, scale->photodiode_lx);
   if (!status.recording.error.empty()) return "Recording stopped: " + status.recording.error;
   if (status.recording.active && status.recording.dropped > 0)
     return fmt::format("Recording has lost {} frames: the disk is too slow", status.recording.dropped);

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "daemon/capture/recording_source.h"
 #include "daemon/capture/simulated_source.h"
@@ -121,6 +122,34 @@ Result<std::optional<BoardOptions>> board_options(const Configuration& configura
                                                       : SYNC_REFERENCE_NONE;
   options.trigger = trigger;
   return std::optional(options);
+}
+
+Result<BoardUse::Options> board_use_options(const Configuration& configuration,
+                                            const Calibration& calibration) {
+  const auto& given = configuration.board;
+  std::optional<Eigen::Matrix3d> rotation;
+  if (!given.axes.empty()) {
+    const auto turned = camera_from_board(given.axes);
+    if (!turned) return turned.error();
+    rotation = *turned;
+  }
+  std::vector<FlatAtTemperature> flats;
+  if (!configuration.calibration.directory.empty()) {
+    auto found = flats_by_temperature(configuration.calibration.directory);
+    if (!found) return found.error();
+    flats = std::move(*found);
+  }
+  const auto board = board_options(configuration);
+  if (!board) return board.error();
+  BoardUse::Options options{CalibrationChoice(calibration, std::move(flats), rotation), std::nullopt, false};
+  if (*board && (*board)->trigger) {
+    const BoardOptions::Trigger& trigger = *(*board)->trigger;
+    options.trigger = TriggerChoice{static_cast<double>(trigger.rate_numerator) / trigger.rate_denominator,
+                                    configuration.source.exposure_us};
+    // What follows a reference has its rate from there.
+    options.avoid_flicker = given.avoid_flicker && trigger.reference == SYNC_REFERENCE_NONE;
+  }
+  return options;
 }
 
 Result<Calibration> choose_calibration(const Configuration& configuration) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "daemon/board_use.h"
 #include "daemon/capture/capture_source.h"
 #include "daemon/configuration.h"
 #include "daemon/pipeline/frame_path.h"
@@ -24,6 +25,10 @@ FramePathOptions frame_path_options(const Configuration& configuration);
 // Empty where nothing is to be fitted.
 std::optional<FewLightsOptions> fit_options(const Configuration& configuration);
 
+// What the board's words are used for. usage: axes that are none, naming key, value and what is allowed; bad_input: a fixed
+// pattern of the folder that cannot be read.
+Result<BoardUse::Options> board_use_options(const Configuration& configuration,
+                                            const Calibration& calibration);
 // Empty where no board is configured. usage: an address or a rate that is none, naming key, value and what is allowed.
 Result<std::optional<BoardOptions>> board_options(const Configuration& configuration);
 

@@ -163,6 +163,13 @@ const std::vector<Key>& keys() {
            &C::Board::reference_rate),
       number("board.pulse_us", "length of the trigger pulse in µs, 0: as the board has it", &C::board,
              &C::Board::pulse_us, 0, 100000),
+      boolean("board.avoid_flicker", "trigger rate and exposure move so that they do not beat with lamps",
+              &C::board, &C::Board::avoid_flicker),
+      text("board.axes",
+           "gravity turns the world upright: the board's axes along the camera's x (right in the image), y "
+           "(down) "
+           "and z (lens), as \"x,-z,y\"; empty: it does not",
+           &C::board, &C::Board::axes),
       text("http.listen", "ADDRESS:PORT of page and interface, loopback only", &C::http, &C::Http::listen),
       integer("dds.domain", "DDS domain", &C::dds, &C::Dds::domain, 0, kMaxDdsDomain),
       text("dds.interface", "network interface of DDS; lo stays on this machine", &C::dds,

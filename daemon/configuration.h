@@ -73,6 +73,8 @@ struct Configuration {
     std::string reference = "none";
     std::string reference_rate = "1";
     double pulse_us = 0;
+    bool avoid_flicker = false;
+    std::string axes;
     bool operator==(const Board&) const = default;
   } board;
   struct Http {

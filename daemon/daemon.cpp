@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include <filesystem>
+#include <limits>
 #include <mutex>
 
 #include "daemon/alarm.h"
@@ -19,6 +20,8 @@
 #include "daemon/record/take_name.h"
 #include "daemon/sync/exposure_stamper.h"
 #include "daemon/sync/sync_board.h"
+#include "daemon/sync/temperature_stamper.h"
+#include "daemon/sync/timecode_stamper.h"
 #include "daemon/web/listen_address.h"
 #include "daemon/web/server.h"
 #include "interface/calibration_io.h"
@@ -45,8 +48,13 @@ std::string needs_restart(const Configuration& now, const Configuration& wanted)
   return {};
 }
 
+bool is_take(const std::string& source) {
+  return source.rfind("recording:", 0) == 0;
+}
+
+// No board triggers a take or a simulation.
 bool is_camera(const std::string& source) {
-  return source.rfind("recording:", 0) != 0 && source.rfind("simulated:", 0) != 0;
+  return !is_take(source) && source.rfind("simulated:", 0) != 0;
 }
 
 }  // namespace
@@ -58,7 +66,13 @@ struct Daemon::Parts {
         snapshots(FramePath::prototype(frame_path_options(given))),
         calibration(std::move(calibration_given)),
         recorder(given.record.directory),
-        pipeline(&recorder, &stamper) {}
+        pipeline(&recorder, {&stamper, &timecodes, &temperatures}) {}
+
+  void use_stampers(const std::string& source) {
+    stamper.use(is_camera(source));
+    timecodes.use(!is_take(source));
+    temperatures.use(!is_take(source));
+  }
 
   std::int64_t start_mono_ns = mono_now_ns();
   mutable std::mutex mutex;  // guards configuration and calibration
@@ -68,12 +82,15 @@ struct Daemon::Parts {
   Recorder recorder;
   StrobeRing strobes;
   ExposureStamper stamper{strobes};
+  TimecodeStamper timecodes;
+  TemperatureStamper temperatures;
   Pipeline pipeline;
   std::unique_ptr<Publisher> publisher;
   std::unique_ptr<FitWorker> fits;
   std::unique_ptr<WebServer> web;
-  std::unique_ptr<SyncBoard> board;  // null: none is configured; its button asks the others
-  std::string logged_mismatch;       // log_changes' own
+  std::unique_ptr<SyncBoard> board;     // null: none is configured; its button asks the others
+  std::unique_ptr<BoardUse> board_use;  // null with it
+  std::string logged_mismatch;          // log_changes' own
 };
 
 Status Daemon::check(const Configuration& configuration) {
@@ -84,9 +101,9 @@ Status Daemon::check(const Configuration& configuration) {
     if (!status) return status;
   const auto source = make_capture_source(configuration.source.address, capture_options(configuration));
   if (!source) return source.error();
-  if (const auto board = board_options(configuration); !board) return board.error();
   const auto calibration = choose_calibration(configuration);
   if (!calibration) return calibration.error();
+  if (const auto use = board_use_options(configuration, *calibration); !use) return use.error();
   return check_frames_fit(configuration, *calibration);
 }
 
@@ -97,10 +114,12 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Configuration& configuration
   if (!board) return board.error();
   auto calibration = choose_calibration(configuration);
   if (!calibration) return calibration.error();
+  auto use = board_use_options(configuration, *calibration);
+  if (!use) return use.error();
 
   auto parts = std::make_unique<Parts>(configuration, *calibration);
   Parts& p = *parts;
-  p.stamper.use(is_camera(configuration.source.address));
+  p.use_stampers(configuration.source.address);
   std::unique_ptr<Daemon> daemon(new Daemon(std::move(parts)));
   auto publisher = Publisher::start({configuration.probe.name,
                                      {configuration.dds.domain, configuration.dds.network_interface},
@@ -120,7 +139,8 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Configuration& configuration
   if (!started) return started.error();
   if (*board) {
     (*board)->on_button = [d = daemon.get()](sync_press press) { d->take_button(press); };
-    p.board = std::make_unique<SyncBoard>(std::move(**board), p.strobes);
+    p.board = std::make_unique<SyncBoard>(std::move(**board), p.strobes, p.timecodes);
+    p.board_use = std::make_unique<BoardUse>(*p.board, p.pipeline, p.snapshots, std::move(*use));
   }
   return daemon;
 }
@@ -137,6 +157,8 @@ Status Daemon::reload(const Configuration& wanted) {
     return Error{ErrorKind::usage, section + " changed; that takes a restart"};
   const auto calibration = choose_calibration(wanted);
   if (!calibration) return calibration.error();
+  auto use = board_use_options(wanted, *calibration);
+  if (!use) return use.error();
   std::shared_ptr<CaptureSource> source;
   if (now.source != wanted.source) {
     auto made = make_capture_source(wanted.source.address, capture_options(wanted));
@@ -147,10 +169,11 @@ Status Daemon::reload(const Configuration& wanted) {
       std::move(source),
       std::make_shared<FramePath>(*calibration, frame_path_options(wanted), parts_->snapshots));
   if (!replaced) return replaced;
-  parts_->stamper.use(is_camera(wanted.source.address));
+  parts_->use_stampers(wanted.source.address);
   if (now.fit != wanted.fit) parts_->fits->set_options(fit_options(wanted));
   parts_->configuration = wanted;
   parts_->calibration = *calibration;
+  if (parts_->board_use) parts_->board_use->use(std::move(*use));
   return {};
 }
 
@@ -176,9 +199,27 @@ void Daemon::tell_board() {
                                                      : idle);
 }
 
+void Daemon::use_board() {
+  if (!parts_->board_use) return;
+  if (is_take(parts_->configuration.source.address)) return;  // its light is not the light on set
+  const auto camera = parts_->board->view().temperature[SYNC_SENSOR_CAMERA];
+  parts_->temperatures.set(camera ? static_cast<float>(camera->temperature_mc) * 1e-3F
+                                  : std::numeric_limits<float>::quiet_NaN());
+  const auto calibration = parts_->board_use->turn(parts_->recorder.stats().active);
+  if (!calibration) return;
+  const std::scoped_lock lock(parts_->mutex);
+  const Status replaced = parts_->pipeline.replace(
+      nullptr, std::make_shared<FramePath>(*calibration, frame_path_options(parts_->configuration),
+                                           parts_->snapshots));
+  if (replaced)
+    parts_->calibration = *calibration;
+  else
+    spdlog::error("calibration: {}", replaced.error().message);
+}
+
 void Daemon::stop() {
-  close_take();           // first: nothing else can lose anything
-  parts_->board.reset();  // its button may ask for a take
+  close_take();                              // first: nothing else can lose anything
+  if (parts_->board) parts_->board->stop();  // its button may ask for a take
   parts_->pipeline.stop();
   parts_->snapshots.close();
   parts_->web.reset();
@@ -227,6 +268,7 @@ DaemonStatus Daemon::status() const {
     status.board = parts_->board->view();
     status.board.stamped = parts_->stamper.stamped();
     status.board.left = parts_->stamper.left();
+    parts_->board_use->describe(status.board);
   }
   status.alarm = alarm_for(status);
   return status;

@@ -117,6 +117,7 @@ void serve(Daemon& daemon, const Arguments& arguments, int signals) {
     }
     daemon.log_changes();
     daemon.tell_board();
+    daemon.use_board();
     const std::uint64_t heartbeat = daemon.heartbeat();
     if (watched && heartbeat != last_heartbeat) sd_notify(0, "WATCHDOG=1");
     last_heartbeat = heartbeat;

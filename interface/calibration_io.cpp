@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "interface/calibration_io.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -122,6 +123,36 @@ Result<FlatField> read_flat_field(const std::filesystem::path& file) {
       *text, file.string(),
       [&](const json& root) { return flat_field_from_json(JsonFields(root, file.string())); },
       [](const FlatField&) { return Status(); });
+}
+
+Result<std::vector<FlatAtTemperature>> flats_by_temperature(const std::filesystem::path& directory) {
+  std::vector<FlatAtTemperature> flats;
+  std::error_code failed;
+  for (const auto& entry : std::filesystem::directory_iterator(directory, failed)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind("flat", 0) != 0 || entry.path().extension() != ".json") continue;
+    const auto text = read_text_file(entry.path());
+    if (!text) return text.error();
+    const auto root = parse_json(*text, entry.path().string());
+    if (!root) return root.error();
+    const json fit = root->value("fit", json::object());
+    if (!fit.is_object()) continue;
+    for (const char* key : {"dark_temperature_c", "temperature_c"}) {
+      const auto found = fit.find(key);
+      if (found == fit.end() || !found->is_number()) continue;
+      flats.push_back({found->get<double>(), entry.path()});
+      break;
+    }
+  }
+  if (failed) return Error{ErrorKind::bad_input, directory.string() + ": " + failed.message()};
+  std::sort(flats.begin(), flats.end(),
+            [](const auto& a, const auto& b) { return a.temperature_c < b.temperature_c; });
+  for (std::size_t i = 1; i < flats.size(); ++i)
+    if (flats[i].temperature_c - flats[i - 1].temperature_c < 0.1)
+      return Error{ErrorKind::bad_input, flats[i].file.string() + " and " +
+                                             flats[i - 1].file.filename().string() +
+                                             ": taken at the same temperature; keep one"};
+  return flats;
 }
 
 Result<Calibration> read_calibration(const std::filesystem::path& directory) {

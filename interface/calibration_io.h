@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "lighting/calibration.h"
 #include "lighting/result.h"
@@ -21,6 +22,16 @@ Status write_calibration(const std::filesystem::path& directory, const Calibrati
 Result<Response> read_response(const std::filesystem::path& file);
 Result<Lens> read_lens(const std::filesystem::path& file);
 Result<FlatField> read_flat_field(const std::filesystem::path& file);
+
+// A fixed pattern of a calibration folder and the temperature that its dark frames, or where there were none its even
+// ones, were taken at.
+struct FlatAtTemperature {
+  double temperature_c = 0;
+  std::filesystem::path file;
+};
+// Every flat*.json of the folder that names a temperature, coldest first. bad_input: one of them cannot be read, or two
+// have the same temperature.
+Result<std::vector<FlatAtTemperature>> flats_by_temperature(const std::filesystem::path& directory);
 
 // The three files as one JSON text and back: what a recording carries as its attachment.
 std::string calibration_to_json(const Calibration& calibration);

@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 
+#include "interface/timecode.h"
 #include "lighting/frame_format.h"
 #include "lighting/result.h"
 
@@ -43,6 +44,7 @@ struct RecordedFrame {
   double exposure_us = 0;
   double gain_db = 0;
   float temperature_c = 0;  // NaN: none
+  std::optional<Timecode> timecode{};
 };
 
 // One thread at a time.

@@ -15,6 +15,7 @@ namespace {
 // Names the layout; another layout gets another name.
 constexpr std::uint32_t kMagic = 0x3146574c;  // "LWF1"
 constexpr std::uint32_t kVerbatim = 1;
+constexpr std::uint32_t kHasTimecode = 2;  // in the flags' upper bytes, which takes of before left 0
 
 template <std::unsigned_integral T>
 void put(std::byte*& at, T value) {
@@ -27,6 +28,22 @@ T get(const std::byte*& at) {
   for (std::size_t i = 0; i < sizeof(T); ++i)
     value = static_cast<T>(value | (static_cast<T>(std::to_integer<std::uint8_t>(*at++)) << (8 * i)));
   return value;
+}
+
+std::uint32_t timecode_bits(const std::optional<Timecode>& t) {
+  if (!t) return 0;
+  return kHasTimecode | static_cast<std::uint32_t>(t->hours & 31U) << 8 |
+         static_cast<std::uint32_t>(t->minutes & 63U) << 13 |
+         static_cast<std::uint32_t>(t->seconds & 63U) << 19 |
+         static_cast<std::uint32_t>(t->frames & 63U) << 25 | (t->drop_frame ? 1U << 31 : 0);
+}
+
+std::optional<Timecode> timecode_of(std::uint32_t flags) {
+  if ((flags & kHasTimecode) == 0) return std::nullopt;
+  const auto field = [&](int at, std::uint32_t mask) {
+    return static_cast<std::uint8_t>(flags >> at & mask);
+  };
+  return Timecode{field(8, 31), field(13, 63), field(19, 63), field(25, 63), flags >> 31 != 0};
 }
 
 }  // namespace
@@ -43,7 +60,7 @@ std::array<std::byte, kFrameRecordBytes> pack_record(const FrameRecord& record) 
   std::byte* at = bytes.data();
   const RecordedFrame& frame = record.frame;
   put(at, kMagic);
-  put(at, record.verbatim ? kVerbatim : 0u);
+  put(at, (record.verbatim ? kVerbatim : 0U) | timecode_bits(frame.timecode));
   put(at, record.index);
   put(at, frame.sequence);
   put(at, static_cast<std::uint64_t>(frame.capture_mono_ns));
@@ -62,7 +79,9 @@ std::optional<FrameRecord> unpack_record(std::span<const std::byte> bytes) {
   const std::byte* at = bytes.data();
   if (get<std::uint32_t>(at) != kMagic) return std::nullopt;
   FrameRecord record;
-  record.verbatim = (get<std::uint32_t>(at) & kVerbatim) != 0;
+  const auto flags = get<std::uint32_t>(at);
+  record.verbatim = (flags & kVerbatim) != 0;
+  record.frame.timecode = timecode_of(flags);
   record.index = get<std::uint64_t>(at);
   RecordedFrame& frame = record.frame;
   frame.sequence = get<std::uint64_t>(at);

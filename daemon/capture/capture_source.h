@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
+#include "interface/timecode.h"
 #include "lighting/frame_format.h"
 #include "lighting/result.h"
 
@@ -25,7 +27,9 @@ struct FrameInfo {
   double exposure_us = 0;
   double gain_db = 0;
   float temperature_c = 0;  // NaN where the camera has none
-  bool complete = true;     // false: packets missing, bytes undefined; never given to the radiometer
+  std::optional<Timecode>
+      timecode{};        // of the production's frame in which its middle lies; empty: none is known
+  bool complete = true;  // false: packets missing, bytes undefined; never given to the radiometer
 };
 
 // A frame in the source's own buffer; the buffer goes back when the lease ends. Movable, not copyable.
@@ -104,6 +108,10 @@ class CaptureSource {
   virtual FrameLease wait(std::chrono::milliseconds timeout) noexcept = 0;
   // Stops within 5 s, device included. Leases may outlive stop but not the source.
   virtual void stop() noexcept = 0;
+
+  // Asks for another exposure; frames say in exposure_us from when it holds. Any thread, between start and stop. failed:
+  // the source cannot do that while it runs.
+  virtual Status set_exposure_us(double exposure_us);
 
   [[nodiscard]] virtual SourceState state() const noexcept = 0;
   // One line for a person: what is connected, or what is wrong and what to do.

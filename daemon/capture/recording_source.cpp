@@ -208,6 +208,7 @@ RecordingSource::Next RecordingSource::decode(std::size_t buffer, Decoded& decod
                   .exposure_us = played.frame.exposure_us,
                   .gain_db = played.frame.gain_db,
                   .temperature_c = played.frame.temperature_c,
+                  .timecode = played.frame.timecode,
                   .complete = true};
   return Next::frame;
 }

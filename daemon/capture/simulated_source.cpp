@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <condition_variable>
 #include <ctime>
@@ -94,6 +95,16 @@ class SimulatedSource final : public CaptureSource {
     drop_ready();
   }
 
+  Status set_exposure_us(double exposure_us) override {
+    const double longest_us = 1e6 / setup_.rate_hz;
+    if (!(exposure_us > 0 && exposure_us <= longest_us))
+      return Error{ErrorKind::usage, "exposure_us = " + std::to_string(exposure_us) +
+                                         ": allowed above 0, up to the period of " +
+                                         std::to_string(longest_us)};
+    exposure_us_ = exposure_us;
+    return {};
+  }
+
   [[nodiscard]] SourceState state() const noexcept override {
     const std::lock_guard lock(mutex_);
     return state_;
@@ -149,12 +160,13 @@ class SimulatedSource final : public CaptureSource {
                  std::size_t slot) {
     const double end_s = (static_cast<double>(tick) + 1) / setup_.rate_hz;
     const FrameFormat& format = setup_.model.format;
-    generator.render(end_s, setup_.exposure_us, tick, format.pixel_format, pool_->buffer(slot));
+    const double exposure_us = exposure_us_;
+    generator.render(end_s, exposure_us, tick, format.pixel_format, pool_->buffer(slot));
     FrameInfo info;
     info.format = format;
     info.sequence = tick;
-    info.capture_mono_ns = ns_of(due) - std::llround(setup_.exposure_us * 500);
-    info.exposure_us = setup_.exposure_us;
+    info.capture_mono_ns = ns_of(due) - std::llround(exposure_us * 500);
+    info.exposure_us = exposure_us;
     info.temperature_c = std::numeric_limits<float>::quiet_NaN();
     return info;
   }
@@ -200,6 +212,7 @@ class SimulatedSource final : public CaptureSource {
 
   const std::string name_;
   const simulator::ProbeSetup setup_;
+  std::atomic<double> exposure_us_{setup_.exposure_us};
   const std::unique_ptr<BufferPool> pool_;
   std::vector<Slot> slots_;
 

@@ -127,6 +127,8 @@ void FramePath::process(const FrameInfo& info, std::span<const std::byte> codes)
   out.received_mono_ns = info.received_mono_ns;
   out.format = info.format;
   out.exposure_us = info.exposure_us;
+  out.timecode = info.timecode;
+  out.temperature_c = info.temperature_c;
   out.coverage = coverage_of(out.map.grid);
   out.total_illuminance = lights_->total_illuminance();
   out.measured_illuminance = lights_->map_illuminance();

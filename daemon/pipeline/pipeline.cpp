@@ -32,7 +32,8 @@ Status check_exposure(const FrameInfo& info) {
 
 }  // namespace
 
-Pipeline::Pipeline(FrameSink* sink, FrameStamper* stamper) : sink_(sink), stamper_(stamper) {}
+Pipeline::Pipeline(FrameSink* sink, std::vector<FrameStamper*> stampers)
+    : sink_(sink), stampers_(std::move(stampers)) {}
 
 Pipeline::~Pipeline() {
   stop();
@@ -153,7 +154,7 @@ void Pipeline::handle(const FrameLease& frame) {
     return;
   }
   FrameInfo info = frame.info();
-  if (stamper_ != nullptr) stamper_->stamp(info);
+  for (FrameStamper* stamper : stampers_) stamper->stamp(info);
   path_->process(info, frame.bytes());
   if (sink_ != nullptr) sink_->offer(info, frame.bytes());
 }

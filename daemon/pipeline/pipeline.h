@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "daemon/capture/capture_source.h"
 #include "daemon/pipeline/frame_path.h"
@@ -24,11 +25,11 @@ class FrameSink {
   virtual void offer(const FrameInfo& info, std::span<const std::byte> codes) noexcept = 0;
 };
 
-// Knows better when a frame was exposed than its camera. Must not block or allocate.
+// Knows more of a frame's time than its camera. Must not block or allocate.
 class FrameStamper {
  public:
   virtual ~FrameStamper() = default;
-  // Sets the frame's times where it knows them; false where not.
+  // Sets what it knows; false where it knows nothing.
   virtual bool stamp(FrameInfo& info) noexcept = 0;
 };
 
@@ -36,8 +37,8 @@ class FrameStamper {
 // Everything else in the daemon reads what it publishes; nothing else can make it wait.
 class Pipeline {
  public:
-  // sink and stamper may be null, and outlive the pipeline.
-  explicit Pipeline(FrameSink* sink, FrameStamper* stamper = nullptr);
+  // sink may be null; stampers are asked in their order. All outlive the pipeline.
+  explicit Pipeline(FrameSink* sink, std::vector<FrameStamper*> stampers = {});
   ~Pipeline();
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
@@ -73,7 +74,7 @@ class Pipeline {
   void measure_rate(std::int64_t now_ns) noexcept;
 
   FrameSink* sink_;
-  FrameStamper* stamper_;
+  std::vector<FrameStamper*> stampers_;
   RetiredSources retired_;
   std::thread thread_;
   std::atomic<bool> stopping_{false};

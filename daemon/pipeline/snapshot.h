@@ -7,9 +7,11 @@
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "interface/timecode.h"
 #include "lighting/frame_format.h"
 #include "lighting/light_set.h"
 #include "lighting/map_harmonics.h"
@@ -27,6 +29,8 @@ struct Snapshot {
   std::int64_t publish_mono_ns = 0;  // the lights were ready
   FrameFormat format;                // of the raw frame
   double exposure_us = 0;
+  std::optional<Timecode> timecode{};
+  float temperature_c = 0;                // of the camera; NaN: not known
   std::array<char, 17> calibration_id{};  // zero-terminated
   Coverage coverage = Coverage::hemisphere;
   Rgb total_illuminance = Rgb::Zero();                           // filtered, what the lights stand for

@@ -18,6 +18,7 @@ void fill_frame(const AnySnapshot& snapshot, FrameHeader& header) {
 
 void fill_header(const Snapshot& snapshot, FrameHeader& header) {
   fill_frame(snapshot, header);
+  header.timecode = snapshot.timecode ? timecode_text(*snapshot.timecode) : std::string();
   header.coverage = snapshot.coverage;
   header.measured_part = snapshot.map.coverage;
   header.total_illuminance = snapshot.total_illuminance;

@@ -17,7 +17,8 @@ RecordedFrame recorded_frame(const FrameInfo& info) {
           .capture_utc_ns = info.capture_utc_ns,
           .exposure_us = info.exposure_us,
           .gain_db = info.gain_db,
-          .temperature_c = info.temperature_c};
+          .temperature_c = info.temperature_c,
+          .timecode = info.timecode};
 }
 
 Recorder::Recorder(std::filesystem::path directory, std::size_t ring_bytes)

@@ -48,6 +48,10 @@ const char* name(BoardState state) {
   return "";
 }
 
+Timecode timecode_of(const sync_timecode& t) {
+  return {t.hours, t.minutes, t.seconds, t.frames, (t.flags & SYNC_TIMECODE_DROP_FRAME) != 0};
+}
+
 std::string fault_text(const sync_fault& fault) {
   std::string text = fmt::format("message {:#04x}: {}", fault.type, fault_words(fault.code));
   sync_field_list fields{};

@@ -7,7 +7,10 @@
 #include <optional>
 #include <string>
 
+#include "daemon/sync/flicker_follower.h"
+#include "daemon/sync/photodiode_check.h"
 #include "interface/sync_protocol.h"
+#include "interface/timecode.h"
 
 namespace lightwell {
 
@@ -36,8 +39,15 @@ struct BoardView {
   std::optional<sync_timecode> timecode;
   // Frames whose exposure the strobe told, and those it did not.
   std::uint64_t stamped = 0, left = 0;
-  std::string refused;  // the last FAULT, in words; empty: none since the connection
+  // What the daemon makes of it (daemon/board_use.h).
+  std::optional<PhotodiodeCheck::Verdict> photodiode_check;
+  std::optional<TriggerChoice> avoiding;  // trigger and exposure, where lamps moved them from those asked for
+  double tilt_deg = 0;                    // of the camera off the zenith, by the calibration in use
+  std::string refused;                    // the last FAULT, in words; empty: none since the connection
 };
+
+// What TIMECODE names.
+Timecode timecode_of(const sync_timecode& message);
 
 // A FAULT in words: message, field, allowed range.
 std::string fault_text(const sync_fault& fault);

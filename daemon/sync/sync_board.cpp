@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "daemon/clock.h"
@@ -17,6 +18,8 @@ constexpr std::int64_t kPingNs =
 constexpr std::int64_t kStateNs = 500'000'000;     // LED
 constexpr std::int64_t kHelloNs = 500'000'000;     // until it is answered
 constexpr std::int64_t kSilentNs = 1'000'000'000;  // 40 pings unanswered
+// While the clocks may be further apart than that, a frame is better stamped by its camera.
+constexpr double kGoodEnoughUs = 2000;
 constexpr auto kTurn = std::chrono::milliseconds(10);
 
 sync_message message_of(sync_type type) {
@@ -32,17 +35,23 @@ std::string hello_text(const sync_hello& hello) {
 
 }  // namespace
 
-SyncBoard::SyncBoard(BoardOptions options, StrobeRing& strobes)
+SyncBoard::SyncBoard(BoardOptions options, StrobeRing& strobes, TimecodeStamper& timecodes)
     : options_(std::move(options)),
       port_(options_.open ? make_polled_port(options_.open) : make_sync_port(options_.address)),
-      strobes_(strobes) {
+      strobes_(strobes),
+      timecodes_(timecodes),
+      trigger_(options_.trigger) {
   set_state(BoardState::no_device, "not looked for yet");
   thread_ = std::thread([this] { run(); });
 }
 
 SyncBoard::~SyncBoard() {
+  stop();
+}
+
+void SyncBoard::stop() noexcept {
   stopping_ = true;
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 BoardView SyncBoard::view() const {
@@ -136,6 +145,7 @@ Status SyncBoard::send_due(SyncLink& link) {
     if (Status sent = send(link, message_of(SYNC_HELLO_REQUEST)); !sent) return sent;
   }
   if (!agreed_) return {};
+  if (Status sent = take_next_trigger(link); !sent) return sent;
   if (!std::exchange(asked_, true))
     if (Status sent = send(link, message_of(SYNC_CONFIGURATION_REQUEST)); !sent) return sent;
   if (now_ns >= next_state_ns_) {
@@ -160,8 +170,8 @@ Status SyncBoard::configure(SyncLink& link, const sync_configuration& current) {
   c = current;
   c.camera_on = 1;
   c.store = 0;  // the host says it at every start; flash wears
-  if (!options_.trigger) return send(link, message);
-  const BoardOptions::Trigger& wanted = *options_.trigger;
+  if (!trigger_) return send(link, message);
+  const BoardOptions::Trigger& wanted = *trigger_;
   c.trigger_on = 1;
   c.rate_numerator = wanted.rate_numerator;
   c.rate_denominator = wanted.rate_denominator;
@@ -171,6 +181,34 @@ Status SyncBoard::configure(SyncLink& link, const sync_configuration& current) {
   c.reference_numerator = wanted.reference_numerator;
   c.reference_denominator = wanted.reference_denominator;
   return send(link, message);
+}
+
+void SyncBoard::set_trigger(double rate_hz, double exposure_us) {
+  if (!options_.trigger) return;
+  BoardOptions::Trigger next = *options_.trigger;
+  constexpr double kMilli = 1000;
+  next.rate_numerator = static_cast<std::uint32_t>(std::lround(rate_hz * kMilli));
+  next.rate_denominator = static_cast<std::uint32_t>(kMilli);
+  const auto& asked = *options_.trigger;
+  // The rate that was asked for is an exact fraction.
+  if (std::abs(rate_hz * asked.rate_denominator - asked.rate_numerator) < 1e-4 * asked.rate_numerator) {
+    next.rate_numerator = asked.rate_numerator;
+    next.rate_denominator = asked.rate_denominator;
+  }
+  next.exposure_ns = static_cast<std::uint32_t>(std::lround(exposure_us * 1e3));
+  const std::scoped_lock lock(mutex_);
+  next_trigger_ = next;
+}
+
+Status SyncBoard::take_next_trigger(SyncLink& link) {
+  std::optional<sync_configuration> current;
+  {
+    const std::scoped_lock lock(mutex_);
+    if (!next_trigger_) return {};
+    trigger_ = std::exchange(next_trigger_, std::nullopt);
+    current = view_.configuration;
+  }
+  return current ? configure(link, *current) : Status();  // else when it has told its own
 }
 
 // The board has started again: it may be another firmware, and has forgotten what it was told.
@@ -187,9 +225,12 @@ void SyncBoard::take_strobe(const sync_strobe& strobe) {
   if ((strobe.flags & SYNC_STROBE_PAIRED) == 0 || (strobe.flags & SYNC_STROBE_NO_FALL) != 0) return;
   const auto begin = clock_.mono_ns(static_cast<std::int64_t>(strobe.t_rise_board_ns));
   const auto end = clock_.mono_ns(static_cast<std::int64_t>(strobe.t_fall_board_ns));
-  // While the clocks may be further apart than that, a frame is better stamped by its camera.
-  constexpr double kGoodEnoughUs = 2000;
   if (begin && end && clock_.bound_us() < kGoodEnoughUs) strobes_.push({strobe.n, *begin, *end});
+}
+
+void SyncBoard::take_timecode(const sync_timecode& timecode) {
+  const auto start = clock_.mono_ns(static_cast<std::int64_t>(timecode.t_board_ns));
+  if (start && clock_.bound_us() < kGoodEnoughUs) timecodes_.word(timecode_of(timecode), *start);
 }
 
 void SyncBoard::take(const sync_message& message, std::int64_t received_mono_ns) {
@@ -218,6 +259,7 @@ void SyncBoard::take(const sync_message& message, std::int64_t received_mono_ns)
                 static_cast<std::int64_t>(message.pong.t_received_board_ns),
                 static_cast<std::int64_t>(message.pong.t_sent_board_ns), received_mono_ns});
   if (message.type == SYNC_STROBE) take_strobe(message.strobe);
+  if (message.type == SYNC_TIMECODE) take_timecode(message.timecode);
   if (message.type == SYNC_BUTTON && options_.on_button)
     options_.on_button(static_cast<sync_press>(message.button.press));
   const std::scoped_lock lock(mutex_);

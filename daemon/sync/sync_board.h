@@ -15,6 +15,7 @@
 #include "daemon/sync/board_view.h"
 #include "daemon/sync/strobe_ring.h"
 #include "daemon/sync/sync_link.h"
+#include "daemon/sync/timecode_stamper.h"
 #include "interface/sync_frame.h"
 #include "interface/sync_protocol.h"
 
@@ -41,13 +42,17 @@ struct BoardOptions {
 // clock by 40 exchanges a second; keeps what it says. A board that is not there is no error.
 class SyncBoard {
  public:
-  // strobes: takes exposures as the strobe shows them, and outlives this.
-  SyncBoard(BoardOptions options, StrobeRing& strobes);
+  // strobes takes exposures as the strobe shows them, timecodes the words of LTC; both outlive this.
+  SyncBoard(BoardOptions options, StrobeRing& strobes, TimecodeStamper& timecodes);
   ~SyncBoard();
   SyncBoard(const SyncBoard&) = delete;
   SyncBoard& operator=(const SyncBoard&) = delete;
 
+  // Ends the thread; what was seen last stays to be read.
+  void stop() noexcept;
   [[nodiscard]] BoardView view() const;
+  // Another rate and exposure from now on, of the trigger that was asked for; nothing where none was.
+  void set_trigger(double rate_hz, double exposure_us);
   // What the board's LED shows; while recording it takes no update.
   void set_host_state(sync_host state) noexcept { host_state_ = state; }
 
@@ -60,13 +65,16 @@ class SyncBoard {
   Status send_due(SyncLink& link);
   void take(const sync_message& message, std::int64_t received_mono_ns);
   void take_strobe(const sync_strobe& strobe);
+  void take_timecode(const sync_timecode& timecode);
   void begin_anew();
   Status configure(SyncLink& link, const sync_configuration& current);
+  Status take_next_trigger(SyncLink& link);
   void set_state(BoardState state, const std::string& description);
 
   BoardOptions options_;
   std::unique_ptr<SyncPort> port_;
   StrobeRing& strobes_;
+  TimecodeStamper& timecodes_;
   std::atomic<sync_host> host_state_{SYNC_HOST_IDLE};
   std::atomic<bool> stopping_{false};
 
@@ -83,7 +91,9 @@ class SyncBoard {
   bool asked_ = false;   // for its configuration
   std::optional<sync_configuration> to_configure_;
 
-  mutable std::mutex mutex_;  // guards view_
+  std::optional<BoardOptions::Trigger> trigger_;  // the latest wanted
+  mutable std::mutex mutex_;                      // guards view_ and next_trigger_
+  std::optional<BoardOptions::Trigger> next_trigger_;
   BoardView view_;
   std::thread thread_;
 };

@@ -69,9 +69,17 @@ Json temperature_of(const std::optional<sync_temperature>& temperature) {
   return temperature ? Json(temperature->temperature_mc * 1e-3) : Json(nullptr);
 }
 
-std::string timecode_text(const sync_timecode& t) {
-  return fmt::format("{:02}:{:02}:{:02}{}{:02}", t.hours, t.minutes, t.seconds,
-                     (t.flags & SYNC_TIMECODE_DROP_FRAME) != 0 ? ';' : ':', t.frames);
+Json check_of(const std::optional<PhotodiodeCheck::Verdict>& check) {
+  if (!check) return nullptr;
+  return {{"photodiode_lx", check->photodiode_lx},
+          {"camera_lx", check->camera_lx},
+          {"ratio", check->ratio},
+          {"differs", check->differs}};
+}
+
+Json choice_of(const std::optional<TriggerChoice>& choice) {
+  if (!choice) return nullptr;
+  return {{"rate_hz", choice->rate_hz}, {"exposure_us", choice->exposure_us}};
 }
 
 }  // namespace
@@ -90,7 +98,10 @@ Json board_json(const BoardView& board) {
           {"up_m_s2", board.imu ? up_of(*board.imu) : Json(nullptr)},
           {"temperature_c", temperature_of(board.temperature[SYNC_SENSOR_BOARD])},
           {"camera_temperature_c", temperature_of(board.temperature[SYNC_SENSOR_CAMERA])},
-          {"timecode", board.timecode ? Json(timecode_text(*board.timecode)) : Json(nullptr)},
+          {"photodiode_check", check_of(board.photodiode_check)},
+          {"avoiding", choice_of(board.avoiding)},
+          {"tilt_deg", board.tilt_deg},
+          {"timecode", board.timecode ? Json(timecode_text(timecode_of(*board.timecode))) : Json(nullptr)},
           {"refused", board.refused}};
 }
 

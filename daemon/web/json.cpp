@@ -104,6 +104,7 @@ std::string lights_json(const Snapshot& snapshot, const FitSnapshot* fit) {
              {"sequence", snapshot.sequence},
              {"capture_time_ns", snapshot.capture_mono_ns},
              {"capture_utc_ns", snapshot.capture_utc_ns},
+             {"timecode", snapshot.timecode ? Json(timecode_text(*snapshot.timecode)) : Json(nullptr)},
              {"publish_time_ns", snapshot.publish_mono_ns},
              {"calibration_id", std::string(snapshot.calibration_id.data())},
              {"measured_part", snapshot.map.coverage},
@@ -138,6 +139,7 @@ void write_stream_event(const Snapshot& snapshot, std::string& event) {
   append(event, snapshot.capture_mono_ns);
   event += ",\"publish_time_ns\":";
   append(event, snapshot.publish_mono_ns);
+  if (snapshot.timecode) event += ",\"timecode\":\"" + timecode_text(*snapshot.timecode) + "\"";
   event += ",\"clipped_pixels\":";
   append(event, snapshot.map.clipped_pixels);
   append_triple(event, ",\"total_illuminance\":", snapshot.total_illuminance);

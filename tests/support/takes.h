@@ -89,7 +89,8 @@ inline bool same_bits(const RecordedFrame& a, const RecordedFrame& b) {
          a.received_mono_ns == b.received_mono_ns && a.capture_utc_ns == b.capture_utc_ns &&
          std::bit_cast<std::uint64_t>(a.exposure_us) == std::bit_cast<std::uint64_t>(b.exposure_us) &&
          std::bit_cast<std::uint64_t>(a.gain_db) == std::bit_cast<std::uint64_t>(b.gain_db) &&
-         std::bit_cast<std::uint32_t>(a.temperature_c) == std::bit_cast<std::uint32_t>(b.temperature_c);
+         std::bit_cast<std::uint32_t>(a.temperature_c) == std::bit_cast<std::uint32_t>(b.temperature_c) &&
+         a.timecode == b.timecode;
 }
 
 inline bool same(const TakeFrame& a, const TakeFrame& b) {

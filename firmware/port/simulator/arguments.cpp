@@ -32,7 +32,13 @@ void add_arguments(CLI::App& app, WorldOptions& w, double& seconds) {
       ->check(CLI::Range(0.0, 240.0));
   app.add_option("--reference-ppm", w.reference_ppm, "The reference against true time")
       ->check(CLI::Range(-1000.0, 1000.0));
-  app.add_option("--reference-stops", w.reference_stops_s, "Second at which it is unplugged")
+  app.add_option("--timecode-hz", w.timecode_hz,
+                 "Frames a second of a timecode (LTC), as 25 or 29.97002997; 0: none")
+      ->check(CLI::Range(0.0, 30.0));
+  app.add_option("--timecode-start", w.timecode_start_s, "Seconds since midnight that it begins with")
+      ->check(CLI::Range(0, 86399))
+      ->capture_default_str();
+  app.add_option("--reference-stops", w.reference_stops_s, "Second at which both are unplugged")
       ->check(CLI::Range(0.0, 1e9));
   app.add_option("--camera-delay-us", w.camera_delay_us, "Trigger to exposure")
       ->check(CLI::Range(0.0, 1e6))

@@ -41,9 +41,9 @@ Simulator::Simulator(const WorldOptions& options) : world(options) {
   };
   verifier_.verify = update_verify_none;
   facts_ = {.tick_hz = World::kTickHz,
-            .capabilities = SYNC_CAN_TRIGGER | SYNC_CAN_STROBE | SYNC_CAN_REFERENCE | SYNC_CAN_PHOTODIODE |
-                            SYNC_CAN_IMU | SYNC_CAN_TEMPERATURE | SYNC_CAN_BUTTON | SYNC_CAN_CAMERA_POWER |
-                            SYNC_CAN_STORE,
+            .capabilities = SYNC_CAN_TRIGGER | SYNC_CAN_STROBE | SYNC_CAN_REFERENCE | SYNC_CAN_TIMECODE |
+                            SYNC_CAN_PHOTODIODE | SYNC_CAN_IMU | SYNC_CAN_TEMPERATURE | SYNC_CAN_BUTTON |
+                            SYNC_CAN_CAMERA_POWER | SYNC_CAN_STORE,
             .serial = {0x53494D55, 0x4C41544F, options.seed},
             .slot = 0,
             .sample_hz = World::kSampleHz,

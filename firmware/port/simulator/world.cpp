@@ -18,7 +18,9 @@ constexpr double kWarming_s = 600;
 
 }  // namespace
 
-World::World(const WorldOptions& options) : options_(options), random_(options.seed) {}
+World::World(const WorldOptions& options) : options_(options), random_(options.seed) {
+  if (options.timecode_hz > 0) timecode_.emplace(options.timecode_hz, options.timecode_start_s);
+}
 
 std::uint64_t World::tick_of(double true_s) const {
   return static_cast<std::uint64_t>(true_s * kTickHz * (1 + options_.drift_ppm * 1e-6));
@@ -80,6 +82,15 @@ void World::feed_reference() {
     if (at < options_.reference_stops_s) capture(BOARD_REFERENCE, at);
 }
 
+void World::feed_timecode() {
+  if (!timecode_) return;
+  const double slower = 1 / (1 + options_.reference_ppm * 1e-6);
+  for (double at = timecode_->next() * slower; at <= seconds(); at = timecode_->next() * slower) {
+    if (at < options_.reference_stops_s) capture(BOARD_TIMECODE, at);
+    timecode_->advance();
+  }
+}
+
 void World::feed_sensors() {
   const double now = seconds();
   double light = 1 + options_.noise * normal_(random_);
@@ -113,6 +124,7 @@ void World::step() {
   if (!camera_on_) camera_ready_s_ = seconds() + kStartOfCamera_s;
   make_pulses();
   feed_reference();
+  feed_timecode();
   feed_sensors();
 }
 

@@ -8,10 +8,12 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <random>
 #include <vector>
 
 #include "firmware/hal/hal.h"
+#include "firmware/port/simulator/timecode_source.h"
 
 namespace lightwell::sync_simulator {
 
@@ -24,7 +26,9 @@ struct WorldOptions {
   double jitter_ns = 200;   // standard deviation of a captured edge
   double reference_hz = 0;  // 0: none
   double reference_ppm = 0;
-  double reference_stops_s = 1e300;  // the plug is pulled
+  double reference_stops_s = 1e300;  // the plug is pulled, of the timecode too
+  double timecode_hz = 0;            // frames a second of LTC; 0: none
+  int timecode_start_s = 3600;       // since midnight
   double camera_delay_us = 30;
   double exposure_us = 4000;
   double lost_triggers = 0, lost_strobes = 0;  // of all, 0 to 1
@@ -73,6 +77,7 @@ class World {
   void make_pulses();
   void answer(double true_s);
   void feed_reference();
+  void feed_timecode();
   void feed_sensors();
   void capture(board_input input, double true_s);
 
@@ -93,6 +98,7 @@ class World {
     double true_s;
     board_input input;
   };
+  std::optional<TimecodeSource> timecode_;
   std::deque<Edge> coming_;  // of the strobe line, in order
   std::uint64_t next_reference_ = 0, next_imu_ = 0, next_temperature_ = 0;
 };

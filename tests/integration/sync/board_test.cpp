@@ -163,11 +163,12 @@ class SyncBoardAndFirmware : public ::testing::Test {
     return options;
   }
   StrobeRing strobes_;
+  TimecodeStamper timecodes_;
 };
 
 TEST_F(SyncBoardAndFirmware, TheBoardTriggersAsToldAndItsStrobesAreTheExposuresByTheHostsClock) {
   Hardware hardware;
-  SyncBoard board(options(hardware), strobes_);
+  SyncBoard board(options(hardware), strobes_, timecodes_);
   ASSERT_TRUE(eventually([&] { return board.view().status && board.view().status->strobes > 100; }));
   const BoardView view = board.view();
   EXPECT_EQ(view.state, BoardState::connected);
@@ -198,7 +199,7 @@ TEST_F(SyncBoardAndFirmware, TheBoardTriggersAsToldAndItsStrobesAreTheExposuresB
 
 TEST_F(SyncBoardAndFirmware, FramesOfACameraAreStampedWithTheirExposure) {
   Hardware hardware;
-  SyncBoard board(options(hardware), strobes_);
+  SyncBoard board(options(hardware), strobes_, timecodes_);
   ExposureStamper stamper(strobes_);
   ASSERT_TRUE(eventually([&] { return !strobes_.empty(); }));
   int stamped = 0;
@@ -228,7 +229,7 @@ TEST_F(SyncBoardAndFirmware, FramesOfACameraAreStampedWithTheirExposure) {
 
 TEST_F(SyncBoardAndFirmware, ACameraThatDoesNotAnswerIsCounted) {
   Hardware hardware(false);
-  SyncBoard board(options(hardware), strobes_);
+  SyncBoard board(options(hardware), strobes_, timecodes_);
   EXPECT_TRUE(
       eventually([&] { return board.view().status && board.view().status->unanswered_triggers > 20; }));
   EXPECT_TRUE(strobes_.empty());
@@ -238,7 +239,7 @@ TEST_F(SyncBoardAndFirmware, WhatTheFirmwareRefusesIsNamedWithItsLimits) {
   Hardware hardware;
   BoardOptions wrong = options(hardware);
   wrong.trigger->rate_numerator = 100'000;
-  SyncBoard board(wrong, strobes_);
+  SyncBoard board(wrong, strobes_, timecodes_);
   ASSERT_TRUE(eventually([&] { return !board.view().refused.empty(); }));
   EXPECT_NE(board.view().refused.find("rate"), std::string::npos) << board.view().refused;
   EXPECT_NE(board.view().refused.find("allowed"), std::string::npos) << board.view().refused;

@@ -195,10 +195,11 @@ class SyncBoards : public ::testing::Test {
 
   ScriptedBoard there_;
   StrobeRing strobes_;
+  TimecodeStamper timecodes_;
 };
 
 TEST_F(SyncBoards, WhatTheBoardSaysIsSeen) {
-  SyncBoard board(options(), strobes_);
+  SyncBoard board(options(), strobes_, timecodes_);
   ASSERT_TRUE(eventually([&] { return connected(board) && board.view().clock_bound_us > 0; }));
   sync_message status{}, imu{}, temperature{}, lamp{};
   status.type = SYNC_STATUS;
@@ -222,7 +223,7 @@ TEST_F(SyncBoards, WhatTheBoardSaysIsSeen) {
 }
 
 TEST_F(SyncBoards, StrobesComeByTheHostsClock) {
-  SyncBoard board(options(), strobes_);
+  SyncBoard board(options(), strobes_, timecodes_);
   ASSERT_TRUE(eventually([&] { return connected(board) && board.view().clock_bound_us > 0; }));
   const std::int64_t begin = mono_now_ns(), end = begin + 4'000'000;
   sync_message strobe{};
@@ -248,7 +249,7 @@ TEST_F(SyncBoards, TheConfiguredTriggerIsSentWithWhatTheBoardHas) {
   with.trigger = BoardOptions::Trigger{};
   with.trigger->rate_numerator = 24;
   there_.behave({});
-  SyncBoard board(with, strobes_);
+  SyncBoard board(with, strobes_, timecodes_);
   ASSERT_TRUE(eventually([&] { return there_.configuration().trigger_on == 1; }));
   EXPECT_EQ(there_.configuration().rate_numerator, 24u);
   EXPECT_EQ(there_.configuration().store, 0) << "flash wears";
@@ -263,14 +264,14 @@ TEST_F(SyncBoards, WhatItRefusesIsSaidByFieldAndRange) {
   BoardOptions with = options();
   with.trigger = BoardOptions::Trigger{};
   with.trigger->rate_numerator = 5000;
-  SyncBoard board(with, strobes_);
+  SyncBoard board(with, strobes_, timecodes_);
   ASSERT_TRUE(eventually([&] { return !board.view().refused.empty(); }));
   EXPECT_NE(board.view().refused.find("rate_numerator: allowed 1 to 1000"), std::string::npos)
       << board.view().refused;
 }
 
 TEST_F(SyncBoards, ABoardThatGoesIsFoundAgainWithinTwoSeconds) {
-  SyncBoard board(options(), strobes_);
+  SyncBoard board(options(), strobes_, timecodes_);
   ASSERT_TRUE(eventually([&] { return connected(board); }));
   there_.behave({false});
   ASSERT_TRUE(eventually([&] { return board.view().state == BoardState::no_device; }));
@@ -281,7 +282,7 @@ TEST_F(SyncBoards, ABoardThatGoesIsFoundAgainWithinTwoSeconds) {
 }
 
 TEST_F(SyncBoards, ASilentBoardIsNotTakenForOneThatIsWell) {
-  SyncBoard board(options(), strobes_);
+  SyncBoard board(options(), strobes_, timecodes_);
   ASSERT_TRUE(eventually([&] { return connected(board); }));
   there_.behave({true, true});
   ASSERT_TRUE(eventually([&] { return board.view().state == BoardState::no_device; }));
@@ -292,7 +293,7 @@ TEST_F(SyncBoards, OtherFirmwareIsNamedAndNotSpokenTo) {
   there_.behave({true, false, 0x12345678});
   BoardOptions with = options();
   with.trigger = BoardOptions::Trigger{};
-  SyncBoard board(with, strobes_);
+  SyncBoard board(with, strobes_, timecodes_);
   ASSERT_TRUE(eventually([&] { return board.view().state == BoardState::wrong_firmware; }));
   EXPECT_NE(board.view().description.find("12345678"), std::string::npos) << board.view().description;
   EXPECT_EQ(there_.configuration().trigger_on, 0);
@@ -302,7 +303,7 @@ TEST_F(SyncBoards, OtherFirmwareIsNamedAndNotSpokenTo) {
 }
 
 TEST_F(SyncBoards, GarbageAndLostFramesAreSurvivedAndCounted) {
-  SyncBoard board(options(), strobes_);
+  SyncBoard board(options(), strobes_, timecodes_);
   ASSERT_TRUE(eventually([&] { return connected(board); }));
   there_.say_garbage(std::vector<std::uint8_t>(5000, 0x55));
   there_.say_garbage({0});
@@ -319,7 +320,7 @@ TEST_F(SyncBoards, TheLedAndTheButtonReachTheOtherSide) {
   std::atomic<int> presses{0};
   BoardOptions with = options();
   with.on_button = [&](sync_press press) { presses += press == SYNC_BUTTON_SHORT ? 1 : 100; };
-  SyncBoard board(with, strobes_);
+  SyncBoard board(with, strobes_, timecodes_);
   ASSERT_TRUE(eventually([&] { return connected(board); }));
   board.set_host_state(SYNC_HOST_RECORDING);
   EXPECT_TRUE(eventually([&] { return there_.host_state() == SYNC_HOST_RECORDING; }));

@@ -93,14 +93,16 @@ TEST(Recording, ExtremePerFrameValuesComeBackBitForBit) {
                     .capture_utc_ns = -1,
                     .exposure_us = std::numeric_limits<double>::denorm_min(),
                     .gain_db = -0.0,
-                    .temperature_c = std::numeric_limits<float>::quiet_NaN()};
+                    .temperature_c = std::numeric_limits<float>::quiet_NaN(),
+                    .timecode = Timecode{23, 59, 59, 59, true}};
   frames[1].info = {.sequence = std::numeric_limits<std::uint64_t>::max(),
                     .capture_mono_ns = I64::max(),
                     .received_mono_ns = I64::min(),
                     .capture_utc_ns = I64::min(),
                     .exposure_us = std::numeric_limits<double>::infinity(),
                     .gain_db = std::bit_cast<double>(0x7ff0dead0000beefULL),  // a NaN with a payload
-                    .temperature_c = -std::numeric_limits<float>::infinity()};
+                    .temperature_c = -std::numeric_limits<float>::infinity(),
+                    .timecode = Timecode{}};
   const TemporaryFolder folder;
   for (const RecordingCodec codec : {RecordingCodec::raw, RecordingCodec::ffv1}) {
     const auto file = folder.path() / (std::string(name(codec)) + ".mkv");

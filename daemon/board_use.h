@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "daemon/calibration_choice.h"
+#include "daemon/pipeline/pipeline.h"
+#include "daemon/pipeline/snapshot.h"
+#include "daemon/sync/flicker_follower.h"
+#include "daemon/sync/photodiode_check.h"
+#include "daemon/sync/sync_board.h"
+
+namespace lightwell {
+
+// What the daemon does with what the sync board says, about once a second and never on the frame path: gravity turns the
+// world upright, temperature picks the fixed pattern, lamps move trigger and exposure, the photodiode vouches for the
+// scale. While a take is written nothing of it changes: a take has one calibration.
+class BoardUse {
+ public:
+  struct Options {
+    CalibrationChoice calibration;
+    // Trigger that the board was told, and the exposure that the camera was (0: what its frames say); empty: the board's own.
+    std::optional<TriggerChoice> trigger;
+    bool avoid_flicker = false;  // may depart from it where lamps beat with it
+  };
+  BoardUse(SyncBoard& board, Pipeline& pipeline, SnapshotChannel& snapshots, Options options);
+
+  // After a reload. The thread that calls turn.
+  void use(Options options);
+  // The calibration to develop frames with from now on; empty: the one in use stays.
+  std::optional<Calibration> turn(bool recording);
+
+  // Adds what is known here. Any thread.
+  void describe(BoardView& view) const;
+
+ private:
+  void compare_with_photodiode(const BoardView& board, const Snapshot& newest);
+  void follow_flicker(const BoardView& board, const Snapshot& newest);
+  [[nodiscard]] std::optional<Calibration> choose_calibration(const BoardView& board, const Snapshot& newest);
+  void publish_view();
+
+  SyncBoard& board_;
+  Pipeline& pipeline_;
+  SnapshotChannel& snapshots_;
+  Options options_;
+  std::optional<FlickerFollower> follower_;
+  PhotodiodeCheck photodiode_;
+  std::uint64_t last_photodiode_board_ns_ = 0;
+
+  mutable std::mutex mutex_;  // guards the three below
+  std::optional<PhotodiodeCheck::Verdict> verdict_;
+  std::optional<TriggerChoice> avoiding_;
+  double tilt_deg_ = 0;
+};
+
+}  // namespace lightwell
