@@ -23,11 +23,11 @@ std::vector<std::string> offered_chunks(ArvCamera* camera) {
   return list;
 }
 
-std::optional<double> number(ArvChunkParser* parser, ArvBuffer* buffer, const char* chunk) {
+// nullopt: not in this frame, or nothing that it could be.
+std::optional<double> number(ArvChunkParser* parser, ArvBuffer* buffer, const char* chunk, double least) {
   GlibError error;
   const double value = arv_chunk_parser_get_float_value(parser, buffer, chunk, error.out());
-  if (error) return std::nullopt;  // not in this frame
-  return value;
+  return !error && value >= least && value <= 1e9 ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace
@@ -58,8 +58,8 @@ void AravisChunks::enable(ArvCamera* camera, SessionSettings& settings) {
 AravisChunks::Values AravisChunks::read(ArvBuffer* buffer) const {
   Values values;
   if (parser_ == nullptr || !arv_buffer_has_chunks(buffer)) return values;
-  if (exposure_) values.exposure_us = number(parser_.get(), buffer, "ChunkExposureTime");
-  if (gain_) values.gain_db = number(parser_.get(), buffer, "ChunkGain");
+  if (exposure_) values.exposure_us = number(parser_.get(), buffer, "ChunkExposureTime", 0);
+  if (gain_) values.gain_db = number(parser_.get(), buffer, "ChunkGain", -1000);
   if (timestamp_) {
     GlibError error;
     const gint64 t = arv_chunk_parser_get_integer_value(parser_.get(), buffer, "ChunkTimestamp", error.out());

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <arv.h>
 #include <gtest/gtest.h>
 
 #include "daemon/capture/v4l2_source.h"
@@ -40,6 +41,21 @@ CaptureOptions small(double rate_hz) {
   options.rate_hz = rate_hz;
   return options;
 }
+
+// A camera that is no GigE Vision camera, found by its name: Aravis's own fake, in this process. What USB3 Vision has of
+// its own lies below Aravis's interface.
+struct NamedSubject {
+  std::string missing() {
+    if (!PrivateNetwork::reason().empty())
+      return PrivateNetwork::reason();  // names are looked for on networks too
+    arv_enable_interface("Fake");
+    return {};
+  }
+  std::unique_ptr<CaptureSource> make() { return made("aravis:Fake_1", small(100)); }
+  std::unique_ptr<CaptureSource> make_silent() { return made("aravis:Nobody-1", small(100)); }
+  ~NamedSubject() { arv_disable_interface("Fake"); }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(AravisByName, CaptureContract, NamedSubject);
 
 struct SimulatedSubject {
   std::string missing() { return {}; }

@@ -15,16 +15,24 @@ extern char** environ;
 namespace lightwell::test {
 
 FakeCamera::FakeCamera(int width, int height, double rate_hz, const std::string& serial) {
+  start({LIGHTWELL_BIN_DIR "/test-fake-camera", std::to_string(width), std::to_string(height),
+         std::to_string(rate_hz), serial});
+}
+
+FakeCamera::FakeCamera(std::uint64_t first_id) {
+  start({LIGHTWELL_BIN_DIR "/test-feature-camera", FEATURE_CAMERA_XML, std::to_string(first_id)});
+}
+
+void FakeCamera::start(std::vector<std::string> words) {
   std::array<int, 2> in{}, out{};
   if (::pipe2(in.data(), O_CLOEXEC) != 0 || ::pipe2(out.data(), O_CLOEXEC) != 0) return;
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, in[0], STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, out[1], STDOUT_FILENO);
-  std::array<std::string, 5> words = {LIGHTWELL_BIN_DIR "/test-fake-camera", std::to_string(width),
-                                      std::to_string(height), std::to_string(rate_hz), serial};
-  std::array<char*, 6> arguments{};
-  for (std::size_t i = 0; i < words.size(); ++i) arguments[i] = words[i].data();
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
   if (::posix_spawn(&pid_, words[0].c_str(), &actions, nullptr, arguments.data(), environ) != 0) pid_ = -1;
   posix_spawn_file_actions_destroy(&actions);
   ::close(in[0]);

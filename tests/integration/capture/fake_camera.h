@@ -4,14 +4,19 @@
 
 #include <sys/types.h>
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace lightwell::test {
 
-// The fake camera's process (fake_camera_main.cpp), listening on 127.0.0.1 of the private network.
+// A camera's process, listening on 127.0.0.1 of the private network.
 class FakeCamera {
  public:
+  // Of fake_camera_main.cpp.
   FakeCamera(int width, int height, double rate_hz, const std::string& serial = "TEST");
+  // Of feature_camera_main.cpp.
+  explicit FakeCamera(std::uint64_t first_id);
   ~FakeCamera() { kill(); }
   FakeCamera(const FakeCamera&) = delete;
   FakeCamera& operator=(const FakeCamera&) = delete;
@@ -23,6 +28,8 @@ class FakeCamera {
   void kill();
 
  private:
+  void start(std::vector<std::string> words);
+
   pid_t pid_ = -1;
   int to_ = -1;
   bool ready_ = false;
