@@ -12,6 +12,7 @@
 #include "daemon/capture/gvcp.h"
 #include "daemon/capture/inspect_camera.h"
 #include "daemon/capture/list_libcamera.h"
+#include "daemon/capture/list_usb3.h"
 #include "daemon/capture/list_v4l2.h"
 #include "daemon/capture/v4l2_format.h"
 #include "interface/option_range.h"
@@ -62,6 +63,18 @@ void print(const GvcpDevice& device, const Result<CameraCapabilities>& camera) {
               camera->sensor_width, camera->sensor_height);
   for (const std::string& format : camera->pixel_formats) std::printf(" %s", format.c_str());
   std::printf("\n");
+}
+
+nlohmann::json as_json(const Usb3Description& camera) {
+  return {{"source", "aravis:" + camera.name},
+          {"manufacturer", camera.vendor},
+          {"model", camera.model},
+          {"serial", camera.serial}};
+}
+
+void print(const Usb3Description& camera) {
+  std::printf("aravis:%s  %s %s, serial %s, USB3 Vision\n", camera.name.c_str(), camera.vendor.c_str(),
+              camera.model.c_str(), camera.serial.c_str());
 }
 
 // What a format becomes here; empty: nothing we read.
@@ -204,6 +217,7 @@ int run(const Options& options) {
   const auto timeout = std::chrono::milliseconds(static_cast<long>(options.timeout_s * 1000));
   const auto devices = gvcp_discover(timeout, options.interfaces);
   // --interface asks about a network alone.
+  const auto usb3 = options.interfaces.empty() ? list_usb3() : std::vector<Usb3Description>();
   const auto local = options.interfaces.empty() ? list_v4l2() : std::vector<V4l2Description>();
   const auto through_libcamera =
       options.interfaces.empty() ? list_libcamera() : std::vector<LibcameraDescription>();
@@ -223,6 +237,7 @@ int run(const Options& options) {
         print(device);
     }
   };
+  tell(usb3);
   tell(local);
   tell(through_libcamera);
   // A device may say anything of itself, in any encoding.
@@ -230,8 +245,9 @@ int run(const Options& options) {
   if (options.json)
     std::printf("%s\n", nlohmann::json{{"devices", list}}.dump(2, ' ', false, kReplace).c_str());
   if (devices.empty()) std::fprintf(stderr, "lightwell: no GigE Vision device found\n");
-  if (devices.empty() && options.interfaces.empty() && local.empty() && through_libcamera.empty())
-    std::fprintf(stderr, "lightwell: no V4L2 or libcamera camera either\n");
+  if (devices.empty() && options.interfaces.empty() && usb3.empty() && local.empty() &&
+      through_libcamera.empty())
+    std::fprintf(stderr, "lightwell: no USB3 Vision, V4L2 or libcamera camera either\n");
   return 0;
 }
 

@@ -61,6 +61,14 @@ CaptureOptions capture_options(const Configuration& configuration) {
   options.rate_hz = source.rate_hz;
   options.exposure_us = source.exposure_us;
   options.controls = source.controls;
+  options.trigger = source.trigger;
+  options.ptp = source.ptp;
+  const auto& board = configuration.board;
+  if (!board.address.empty() && !board.trigger_rate.empty()) {
+    if (options.trigger.empty()) options.trigger = "any";
+    if (const auto rate = rate_of("board.trigger_rate", board.trigger_rate))
+      options.trigger_rate_hz = static_cast<double>(rate->first) / rate->second;
+  }
   options.buffers = source.buffers;
   options.packet_size = source.packet_size;
   options.socket_buffer_bytes = source.socket_buffer_bytes;

@@ -106,6 +106,13 @@ const std::vector<Key>& keys() {
       text("source.controls",
            "controls of V4L2 and libcamera to set: name=value, …, as `lightwell devices` lists them",
            &C::source, &C::Source::controls),
+      text("source.trigger",
+           "input of a GenICam camera that starts its exposures (Line0), off, or empty: as it is, or any "
+           "where the "
+           "board makes triggers",
+           &C::source, &C::Source::trigger),
+      boolean("source.ptp", "GenICam: let PTP (IEEE 1588) keep the camera's clock; false: as it is",
+              &C::source, &C::Source::ptp),
       integer("source.buffers", "frames the camera may fill ahead", &C::source, &C::Source::buffers, 3, 256),
       integer("source.packet_size", "GigE Vision packet in bytes; 1400 where jumbo frames do not pass",
               &C::source, &C::Source::packet_size, 576, 9000),

@@ -28,6 +28,8 @@ struct Configuration {
     double rate_hz = 0;
     double exposure_us = 0;
     std::string controls;
+    std::string trigger;
+    bool ptp = false;
     int buffers = 8;
     int packet_size = 9000;
     int socket_buffer_bytes = 8 << 20;

@@ -85,4 +85,8 @@ class CaptureSession {
   [[nodiscard]] virtual bool all_returned() const noexcept = 0;
 };
 
+// For devices whose triggers their drivers have no standard way to set: a fault where one input was asked for, a remark
+// where any would do.
+std::optional<CaptureFault> refuse_trigger(const CaptureOptions& options, SessionSettings& settings);
+
 }  // namespace lightwell

@@ -241,6 +241,7 @@ std::optional<CaptureFault> LibcameraSession::agree_on_format() {
 }
 
 std::optional<CaptureFault> LibcameraSession::choose_controls() {
+  if (auto fault = refuse_trigger(options_, settings_)) return fault;
   const libcamera::ControlInfoMap& offered = camera_->controls();
   controls_ = libcamera::ControlList(offered);
   const auto has = [&](const libcamera::ControlId& id) { return offered.count(&id) > 0; };

@@ -45,8 +45,9 @@ std::string PtpClock::words(const std::string& status, bool host_is_kept) const 
   if (!seen_) return out;
   // No frame arrives before it was stamped, and none that is whole a second after.
   if (least_delay_ns_ < 0 || least_delay_ns_ > kSecond)
-    return out + fmt::format(", {:.4g} s from this machine's clock",
-                             std::round(static_cast<double>(least_delay_ns_) * 1e-8) / 10);
+    return out + fmt::format(", {:.4g} s {} this machine's clock",
+                             std::round(std::abs(static_cast<double>(least_delay_ns_)) * 1e-8) / 10,
+                             least_delay_ns_ < 0 ? "ahead of" : "behind");
   // In steps, so that the line does not change with every frame.
   double at_most_ms = 0.1;
   while (at_most_ms * 1e6 < static_cast<double>(least_delay_ns_)) at_most_ms *= at_most_ms < 1 ? 10 : 2;

@@ -192,6 +192,7 @@ std::optional<CaptureFault> V4l2Session::apply_settings() {
     remark("asked for " + number(options_.rate_hz) + " Hz, the device grants " + number(settings_.rate_hz));
   if (Status status = device_.set(options_.controls); !status)
     return CaptureFault{SourceState::opening, status.error().message};
+  if (auto fault = refuse_trigger(options_, settings_)) return fault;
   exposure_.emplace(device_, layout_.width);
   if (options_.exposure_us > 0 && exposure_->control() != 0) {
     if (Status status = exposure_->set_us(device_, options_.exposure_us); !status)
