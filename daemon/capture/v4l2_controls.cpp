@@ -114,6 +114,10 @@ bool V4l2Control::is_hdr() const {
                      [&](const char* word) { return name.find(word) != std::string::npos; });
 }
 
+bool V4l2Control::is_gain() const {
+  return id == V4L2_CID_GAIN || id == V4L2_CID_ANALOGUE_GAIN || id == V4L2_CID_DIGITAL_GAIN;
+}
+
 void V4l2Device::read_choices(V4l2Control& c) const {
   const bool numbers = c.kind == V4l2Control::Kind::integer_menu;
   if (!numbers && c.kind != V4l2Control::Kind::menu) return;

@@ -70,20 +70,6 @@ void V4l2Device::close() noexcept {
   fd_ = -1;
 }
 
-std::string V4l2Device::missing_signal() const {
-  int index = 0;
-  v4l2_input input{};
-  if (ioctl(VIDIOC_G_INPUT, &index) != 0) return {};
-  input.index = static_cast<__u32>(index);
-  if (ioctl(VIDIOC_ENUMINPUT, &input) != 0) return {};
-  const std::string where = "input " + text(input.name);
-  if ((input.status & V4L2_IN_ST_NO_POWER) != 0) return where + " has no power";
-  if ((input.status & V4L2_IN_ST_NO_SIGNAL) != 0) return where + " has no signal";
-  if ((input.status & (V4L2_IN_ST_NO_SYNC | V4L2_IN_ST_NO_H_LOCK | V4L2_IN_ST_NO_V_LOCK)) != 0)
-    return where + " finds no lock on its signal";
-  return {};
-}
-
 std::vector<std::uint32_t> V4l2Device::formats() const {
   std::vector<std::uint32_t> list;
   v4l2_fmtdesc d{};

@@ -25,6 +25,8 @@ struct V4l2Control {
   std::vector<std::pair<std::int64_t, std::string>> choices;  // of a menu: index and what it stands for
   // Has to do with high dynamic range on the sensor: its mode, companding, knee points.
   [[nodiscard]] bool is_hdr() const;
+  // Amplifies before or after conversion: codes for the same light depend on it.
+  [[nodiscard]] bool is_gain() const;
 };
 
 // Pixel formats, sizes and rates as the driver lists them; a range has step > 0.
@@ -73,6 +75,10 @@ class V4l2Device {
 
   // In words; empty: there is a signal, or the device cannot tell.
   [[nodiscard]] std::string missing_signal() const;
+  // Of a digital video input (HDMI, SDI): has the device take the size and rate that the signal has, which its format then
+  // has too; nothing on other inputs. false: the device is streaming for somebody. The second asks whether it has them.
+  [[nodiscard]] bool follow_signal() const;
+  [[nodiscard]] bool is_following_signal() const;
   [[nodiscard]] std::vector<std::uint32_t> formats() const;
   [[nodiscard]] std::vector<V4l2FormatDescription> describe_formats() const;
   // 0 or −errno. set takes width, height and fourcc and leaves what the driver made of them.

@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "daemon/capture/v4l2_frame_rate.h"
 #include "daemon/clock.h"
 
 namespace lightwell {
@@ -129,6 +130,7 @@ std::optional<CaptureFault> V4l2Session::open() {
   settings_.name = device_.card() + " (" + device_.bus() + ")";
   if (const std::string missing = device_.missing_signal(); !missing.empty())
     return CaptureFault{SourceState::no_signal, missing};
+  if (!device_.follow_signal()) return CaptureFault{SourceState::opening, "another program is using it"};
   if (auto fault = agree_on_format()) return fault;
   return apply_settings();
 }
@@ -183,10 +185,11 @@ std::optional<CaptureFault> V4l2Session::agree_on_format() {
 }
 
 std::optional<CaptureFault> V4l2Session::apply_settings() {
-  if (options_.rate_hz > 0 && !device_.set_rate(options_.rate_hz))
-    return CaptureFault{SourceState::opening, "rate_hz " + number(options_.rate_hz) +
-                                                  ": the device has no frame rate to set; leave it at 0"};
-  settings_.rate_hz = device_.rate_hz();
+  const V4l2FrameRate rate(device_, layout_.width, layout_.height);
+  if (options_.rate_hz > 0)
+    if (Status status = rate.set_hz(options_.rate_hz); !status)
+      return CaptureFault{SourceState::opening, status.error().message};
+  settings_.rate_hz = rate.read_hz();
   // A rate off by more than a per cent was clamped, not rounded.
   if (options_.rate_hz > 0 && std::abs(settings_.rate_hz - options_.rate_hz) > 0.01 * options_.rate_hz)
     remark("asked for " + number(options_.rate_hz) + " Hz, the device grants " + number(settings_.rate_hz));
@@ -211,8 +214,12 @@ std::optional<CaptureFault> V4l2Session::apply_settings() {
     remark("asked for " + number(options_.exposure_us) + " µs, the device grants " +
            number(settings_.exposure_us));
   }
-  for (const V4l2Control& control : device_.controls())
+  // What a step of gain does is each driver's own affair: no decibels can be told.
+  for (const V4l2Control& control : device_.controls()) {
     if (control.is_hdr()) remark(control.name + " = " + std::to_string(control.value));
+    if (control.is_gain())
+      remark(control.name + " = " + std::to_string(control.value) + " in steps of its own");
+  }
   return std::nullopt;
 }
 
@@ -331,6 +338,7 @@ bool V4l2Session::queue_returned() noexcept {
 }
 
 V4l2Session::Event V4l2Session::next(std::chrono::milliseconds timeout, SessionFrame& frame) noexcept {
+  if (source_changed_) return Event::source_changed;
   if (given_up_ || !queue_returned()) return Event::broken;
   const V4l2Calls::Ready ready = calls_.wait(device_.fd(), wake_fd_, static_cast<int>(timeout.count()));
   if (ready.woken) {
@@ -429,7 +437,10 @@ CaptureFault V4l2Session::fault() const {
 
 std::string V4l2Session::refresh() {
   if (exposure_polled_ && exposure_->known()) settings_.exposure_us = exposure_->read_us(device_);
-  return device_.missing_signal();
+  const std::string missing = device_.missing_signal();
+  // Not every driver sends the event.
+  source_changed_ = missing.empty() && !device_.is_following_signal();
+  return missing;
 }
 
 void V4l2Session::give_back(std::size_t buffer) noexcept {

@@ -73,6 +73,7 @@ class V4l2Session final : public CaptureSession {
   int wake_fd_ = -1;
   int error_ = 0;
   bool streaming_ = false, direct_ = false;
+  bool source_changed_ = false;
   bool given_up_ = false;             // a buffer could not be queued again
   std::vector<Mapping> mappings_;     // the driver's buffers
   std::unique_ptr<BufferPool> pool_;  // ours, where frames are unpacked

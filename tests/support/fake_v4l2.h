@@ -26,6 +26,7 @@ struct FakeV4l2Model {
   int largest_width = 640, largest_height = 480;
   std::size_t padding = 0;  // bytes behind every line
   bool multi_planar = false, exports = true, has_rate = true;
+  bool dv_timings = false;  // its input is one of digital video
   double rate_hz = 100;
   std::uint32_t stamp_flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC | V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
   std::int64_t stamp_age_ns = 4'000'000;  // a stamp lies this long before its frame is ready
@@ -65,6 +66,8 @@ class FakeV4l2 final : public V4l2Calls {
   // The next ioctls of this kind fail.
   void fail(unsigned long request, int error, int times = 1 << 30);
   void set_input_status(std::uint32_t status);
+  // What VIDIOC_QUERY_DV_TIMINGS finds, without an event; error 0: a picture of this size.
+  void set_signal(int error, int width, int height);
   void change_source();                                       // the event
   void change_control(std::uint32_t id, std::int64_t value);  // by somebody else, with its event
   [[nodiscard]] std::int64_t control(std::uint32_t id);
@@ -99,6 +102,7 @@ class FakeV4l2 final : public V4l2Calls {
   };
 
   int answer(File& file, unsigned long request, void* argument);
+  int answer_timings(unsigned long request, void* argument);
   int answer_formats(File& file, unsigned long request, void* argument);
   int answer_controls(unsigned long request, void* argument);
   int answer_buffers(File& file, unsigned long request, void* argument);
@@ -117,6 +121,7 @@ class FakeV4l2 final : public V4l2Calls {
   std::uint32_t fourcc_ = 0;  // in force; 0: the first
   bool plugged_ = true;
   std::uint32_t input_status_ = 0;
+  int signal_error_ = 0, signal_width_ = 0, signal_height_ = 0;  // size 0: as it is set
   std::uint32_t sequence_ = 0, number_ = 0;
   std::map<int, File> files_;
   std::map<unsigned long, std::pair<int, int>> failures_;
