@@ -18,6 +18,7 @@ Error usage(std::string message) {
 
 // One a file, in the order in which --help lists them.
 Command add_bench(CLI::App& app);
+Command add_board(CLI::App& app);
 Command add_calibrate(CLI::App& app);
 Command add_devices(CLI::App& app);
 Command add_doctor(CLI::App& app);
@@ -33,9 +34,9 @@ Command add_status(CLI::App& app);
 
 std::vector<Command> add_commands(CLI::App& app) {
   return {
-      add_lights(app),  add_evaluate(app), add_fit(app),    add_bench(app), add_calibrate(app),
-      add_devices(app), add_doctor(app),   add_filter(app), add_play(app),  add_info(app),
-      add_record(app),  add_repair(app),   add_status(app),
+      add_lights(app),    add_evaluate(app), add_fit(app),    add_bench(app),  add_board(app),
+      add_calibrate(app), add_devices(app),  add_doctor(app), add_filter(app), add_play(app),
+      add_info(app),      add_record(app),   add_repair(app), add_status(app),
   };
 }
 

@@ -112,7 +112,8 @@ class Hardware {
   // Edges come when they are due, as the hardware's timer would make and stamp them.
   void step(std::int64_t now_ns) {
     board_poll(&board_, counter(now_ns));
-    for (; !to_board_.empty(); to_board_.pop_front()) board_byte(&board_, 0, to_board_.front(), counter(now_ns));
+    for (; !to_board_.empty(); to_board_.pop_front())
+      board_byte(&board_, 0, to_board_.front(), counter(now_ns));
     if (board_forgets_pulses(&board_)) pulses_.clear();
     for (std::uint32_t rise = 0, fall = 0; board_take_pulse(&board_, &rise, &fall);)
       pulses_.push_back({rise, mono_of(rise, now_ns)});
