@@ -27,15 +27,14 @@
 #include "firmware/core/board.h"
 #include "firmware/core/settings.h"
 #include "interface/sync_frame.h"
+#include "tests/integration/firmware/firmware_build.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {
 
-constexpr std::uint32_t kHz = 25'000'000;  // the emulated board's clock
+using lightwell::test::have;
 
-bool have(const char* program) {
-  return std::system(("command -v " + std::string(program) + " >/dev/null").c_str()) == 0;
-}
+constexpr std::uint32_t kHz = 25'000'000;  // the emulated board's clock
 
 class Socket {
  public:
@@ -203,16 +202,12 @@ class FirmwareImage : public testing::Test {
   void SetUp() override {
     for (const char* program : {"arm-none-eabi-gcc", "qemu-system-arm", "cmake", "ninja"})
       if (!have(program)) GTEST_SKIP() << program << " is not installed";
-    const std::string configure = "cmake -S " LIGHTWELL_SOURCE_DIR " -B " + build_.path().string() +
-                                  " -G Ninja -DCMAKE_BUILD_TYPE=MinSizeRel -DLIGHTWELL_FIRMWARE=ON "
-                                  "-DCMAKE_TOOLCHAIN_FILE=" LIGHTWELL_SOURCE_DIR
-                                  "/cmake/arm-none-eabi.cmake >/dev/null && cmake --build " +
-                                  build_.path().string() + " >/dev/null";
-    ASSERT_EQ(std::system(configure.c_str()), 0);
+    folder_ = lightwell::test::built_firmware();
+    ASSERT_FALSE(folder_.empty());
   }
-  std::string image(const char* name) const { return (build_.path() / name).string(); }
+  std::string image(const char* name) const { return folder_ + "/" + name; }
 
-  lightwell::test::TemporaryFolder build_;
+  std::string folder_;
 };
 
 TEST_F(FirmwareImage, AnswersHelloAndPingOnAnEmulatedBoard) {
@@ -346,8 +341,7 @@ TEST_F(FirmwareImage, EveryFrameIsKnownAndTheDeepestStackFits) {
   for (const char* program : {"python3", "arm-none-eabi-objdump"})
     if (!have(program)) GTEST_SKIP() << program << " is not installed";
   for (const char* name : {"lightwell-sync-f405", "lightwell-sync-mps2"}) {
-    const std::string command =
-        LIGHTWELL_SOURCE_DIR "/scripts/firmware-stack " + build_.path().string() + " " + name;
+    const std::string command = LIGHTWELL_SOURCE_DIR "/scripts/firmware-stack " + folder_ + " " + name;
     EXPECT_EQ(std::system(command.c_str()), 0) << name;
     EXPECT_NE(std::system((command + " 256 >/dev/null").c_str()), 0) << "a limit that is passed must be said";
   }
