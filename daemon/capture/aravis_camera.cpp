@@ -77,6 +77,12 @@ std::optional<CaptureFault> set_picture(ArvCamera* camera, const CaptureOptions&
   return std::nullopt;
 }
 
+void write_exposure(ArvCamera* camera, double exposure_us, GlibError& error) {
+  if (arv_camera_is_exposure_auto_available(camera, nullptr))
+    arv_camera_set_exposure_time_auto(camera, ARV_AUTO_OFF, error.out());
+  if (!error) arv_camera_set_exposure_time(camera, exposure_us, error.out());
+}
+
 std::optional<CaptureFault> set_timing(ArvCamera* camera, const CaptureOptions& options,
                                        SessionSettings& settings) {
   GlibError error;
@@ -85,9 +91,7 @@ std::optional<CaptureFault> set_timing(ArvCamera* camera, const CaptureOptions& 
     if (error) return not_taken(fmt::format("frame rate {:g} Hz", options.rate_hz), error);
   }
   if (options.exposure_us > 0) {
-    if (arv_camera_is_exposure_auto_available(camera, nullptr))
-      arv_camera_set_exposure_time_auto(camera, ARV_AUTO_OFF, error.out());
-    if (!error) arv_camera_set_exposure_time(camera, options.exposure_us, error.out());
+    write_exposure(camera, options.exposure_us, error);
     if (error) return not_taken(fmt::format("exposure {:g} µs", options.exposure_us), error);
   }
   if (options.ptp) {
@@ -201,6 +205,18 @@ std::optional<CaptureFault> configure_camera(ArvCamera* camera, const CaptureOpt
       socket_buffer_remark(settings.format.bytes(), granted_socket_buffer(options.socket_buffer_bytes));
   if (!small.empty()) add_remark(settings, small);
   return std::nullopt;
+}
+
+Status set_exposure(ArvCamera* camera, double exposure_us) {
+  GlibError error;
+  write_exposure(camera, exposure_us, error);
+  if (!error) return {};
+  std::string words = error.text();
+  double lowest = 0, highest = 0;
+  GlibError range;
+  arv_camera_get_exposure_time_bounds(camera, &lowest, &highest, range.out());
+  if (!range) words += fmt::format("; allowed {:g} to {:g} µs", lowest, highest);
+  return Error{ErrorKind::failed, words};
 }
 
 std::optional<CameraValues> read_values(ArvCamera* camera) {

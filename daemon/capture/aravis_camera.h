@@ -32,6 +32,9 @@ std::optional<CaptureFault> open_camera(const std::string& address, CameraHandle
 std::optional<CaptureFault> configure_camera(ArvCamera* camera, const CaptureOptions& options,
                                              SessionSettings& settings);
 
+// Ends automatic exposure first. failed: refused, with the range that the camera allows.
+Status set_exposure(ArvCamera* camera, double exposure_us);
+
 // What may change while frames come.
 struct CameraValues {
   double exposure_us = 0;

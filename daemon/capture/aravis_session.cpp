@@ -52,6 +52,7 @@ struct AravisSession::Handles {
   DeviceClock device_clock;
   PtpClock ptp_clock;
   std::thread asking;
+  std::mutex camera_mutex;  // one thread at a time asks the camera; never taken under the other
 
   std::mutex
       mutex;  // guards what follows, and pushing into the stream against its end; lists never outgrow the pool
@@ -92,15 +93,23 @@ struct AravisSession::Handles {
     static_cast<Buffer*>(record)->owner->live_buffers.fetch_sub(1);
   }
 
+  // False: it does not answer.
+  bool take_values() {
+    const std::lock_guard one_at_a_time(camera_mutex);
+    auto read = read_values(camera.get());
+    const std::lock_guard lock(mutex);
+    if (read) values = std::move(read);
+    return read.has_value();
+  }
+
   // The asking thread. A camera that sends nothing may be dead, and is left alone.
   void ask() {
     std::unique_lock lock(mutex);
     while (!ending.wait_for(lock, kAsk, [&] { return closed; })) {
       if (!std::exchange(heard, false)) continue;
       lock.unlock();
-      auto read = read_values(camera.get());
+      take_values();
       lock.lock();
-      if (read) values = std::move(read);
     }
   }
 
@@ -263,6 +272,17 @@ std::string AravisSession::refresh() {
   temperature_c_ = values->temperature_c;
   settings_.clock = h.ptp_clock.words(values->ptp, host_clock_is_kept());
   return {};
+}
+
+Status AravisSession::set_exposure_us(double exposure_us) {
+  Handles& h = *handles_;
+  Status set;
+  {
+    const std::lock_guard one_at_a_time(h.camera_mutex);
+    set = set_exposure(h.camera.get(), exposure_us);
+  }
+  if (h.take_values()) refresh();
+  return set;
 }
 
 void AravisSession::give_back(std::size_t buffer) noexcept {

@@ -29,6 +29,8 @@ class AravisSession final : public CaptureSession {
   Event next(std::chrono::milliseconds timeout, SessionFrame& frame) noexcept override;  // allocates nothing
   [[nodiscard]] CaptureFault fault() const override;
   std::string refresh() override;
+  [[nodiscard]] bool sets_exposure() const override { return settings_.exposure_us > 0; }
+  Status set_exposure_us(double exposure_us) override;
   [[nodiscard]] const SessionSettings& settings() const override { return settings_; }
   void give_back(std::size_t buffer) noexcept override;
   void wake() noexcept override;

@@ -4,6 +4,10 @@
 
 namespace lightwell {
 
+Status CaptureSession::set_exposure_us(double) {
+  return Error{ErrorKind::failed, "it cannot change while frames come"};
+}
+
 std::optional<CaptureFault> refuse_trigger(const CaptureOptions& options, SessionSettings& settings) {
   if (options.trigger.empty() || options.trigger == "off") return std::nullopt;
   if (options.trigger != "any")

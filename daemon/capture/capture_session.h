@@ -76,6 +76,12 @@ class CaptureSession {
   virtual std::string refresh() = 0;
   [[nodiscard]] virtual const SessionSettings& settings() const = 0;
 
+  // Whether set_exposure_us can succeed.
+  [[nodiscard]] virtual bool sets_exposure() const { return false; }
+  // Another exposure while frames come; settings have what was granted. Frames that were under way may still have the
+  // old one. failed: refused by the device, which names its range.
+  virtual Status set_exposure_us(double exposure_us);
+
   virtual void give_back(std::size_t buffer) noexcept = 0;
   virtual void wake() noexcept = 0;
   // Ends the connection; buffers that are out may still come back. A camera that has died answers nothing, and takes

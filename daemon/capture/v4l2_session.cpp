@@ -443,6 +443,12 @@ std::string V4l2Session::refresh() {
   return missing;
 }
 
+Status V4l2Session::set_exposure_us(double exposure_us) {
+  if (Status set = exposure_->set_us(device_, exposure_us); !set) return set;
+  settings_.exposure_us = exposure_->read_us(device_);
+  return {};
+}
+
 void V4l2Session::give_back(std::size_t buffer) noexcept {
   {
     const std::lock_guard lock(mutex_);

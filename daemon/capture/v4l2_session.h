@@ -37,6 +37,8 @@ class V4l2Session final : public CaptureSession {
   Event next(std::chrono::milliseconds timeout, SessionFrame& frame) noexcept override;  // allocates nothing
   [[nodiscard]] CaptureFault fault() const override;
   std::string refresh() override;
+  [[nodiscard]] bool sets_exposure() const override { return exposure_ && exposure_->known(); }
+  Status set_exposure_us(double exposure_us) override;
   [[nodiscard]] const SessionSettings& settings() const override { return settings_; }
   void give_back(std::size_t buffer) noexcept override;
   void wake() noexcept override;

@@ -15,7 +15,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kRetry = 200ms;       // where a device fails at its first frame
+constexpr auto kRetry = 200ms;  // where a device fails at its first frame
+// Until an exposure that was changed is that of a frame: sensors take it up two frames later, one is under way.
+constexpr int kExposureDelayFrames = 3;
 constexpr auto kLookAround = 500ms;  // signal and automatic exposure
 constexpr auto kTick = 100ms;        // a stall is found this late at most
 constexpr auto kFirstFrameLimit = 500ms;
@@ -166,6 +168,32 @@ std::unique_ptr<CaptureSession> WatchedSource::connect() {
   }
 }
 
+Status WatchedSource::set_exposure_us(double exposure_us) {
+  const std::lock_guard lock(mutex_);
+  if (current_ == nullptr) return Error{ErrorKind::failed, "there is no camera now"};
+  if (!current_->sets_exposure()) return CaptureSource::set_exposure_us(exposure_us);
+  wanted_exposure_us_ = exposure_us;
+  current_->wake();
+  return {};
+}
+
+// Kept for a camera that comes back: whoever changed it does not know that it went.
+void WatchedSource::change_exposure(CaptureSession& session) {
+  double wanted_us = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    if (wanted_exposure_us_ == set_exposure_us_) return;
+    wanted_us = set_exposure_us_ = wanted_exposure_us_;
+  }
+  if (const Status set = session.set_exposure_us(wanted_us); !set) {
+    spdlog::warn("{}:{}: exposure of {:g} us: {}", kind_, what_, wanted_us, set.error().message);
+    return;
+  }
+  passing_over_ = kExposureDelayFrames;
+  const std::lock_guard lock(mutex_);
+  settings_ = session.settings();
+}
+
 // False when stopping.
 bool WatchedSource::begin(CaptureSession& session) {
   const std::lock_guard lock(mutex_);
@@ -174,6 +202,8 @@ bool WatchedSource::begin(CaptureSession& session) {
   settings_ = session.settings();
   sequence_.reconnected();
   first_frame_ = false;
+  set_exposure_us_ = 0;
+  passing_over_ = 0;
   has_signal_ = true;
   last_frame_ = Clock::now();
   period_ = std::chrono::nanoseconds(
@@ -188,6 +218,7 @@ void WatchedSource::watch(CaptureSession& session) {
   bool said = false;
   for (;;) {
     SessionFrame frame;
+    change_exposure(session);
     const CaptureSession::Event event = session.next(kTick, frame);
     switch (event) {
       case CaptureSession::Event::frame:
@@ -288,10 +319,16 @@ void WatchedSource::frame_done(CaptureSession& session, const SessionFrame& fram
         ++counters_.skipped;
         return;
       }
-      old = std::exchange(slot_, {&session, frame, frame_info(frame, step.sequence)});
-      if (old.session != nullptr) ++counters_.skipped;
-      state_ = SourceState::streaming;
-      frame_ready_.notify_one();
+      if (passing_over_ > 0) {
+        --passing_over_;
+        ++counters_.skipped;
+        old = {&session, frame, {}};
+      } else {
+        old = std::exchange(slot_, {&session, frame, frame_info(frame, step.sequence)});
+        if (old.session != nullptr) ++counters_.skipped;
+        state_ = SourceState::streaming;
+        frame_ready_.notify_one();
+      }
     }
   }
   if (old.session != nullptr) old.session->give_back(old.frame.buffer);

@@ -35,6 +35,7 @@ class WatchedSource final : public CaptureSource {
 
   Status start() override;
   FrameLease wait(std::chrono::milliseconds timeout) noexcept override;
+  Status set_exposure_us(double exposure_us) override;
   void stop() noexcept override;
   [[nodiscard]] SourceState state() const noexcept override;
   [[nodiscard]] std::string describe() const override;
@@ -58,6 +59,7 @@ class WatchedSource final : public CaptureSource {
   bool begin(CaptureSession& session);
   void watch(CaptureSession& session);
   void look_around(CaptureSession& session);
+  void change_exposure(CaptureSession& session);
   void frame_done(CaptureSession& session, const SessionFrame& frame) noexcept;
   FrameInfo frame_info(const SessionFrame& frame, std::uint64_t sequence) noexcept;
   void retire(std::unique_ptr<CaptureSession> session);
@@ -75,6 +77,7 @@ class WatchedSource final : public CaptureSource {
   std::vector<Retired> retired_;  // of the thread: sessions that are closing, or whose frames are out
   std::int64_t last_capture_ns_ = 0;
   FrameSequence sequence_;
+  int passing_over_ = 0;     // frames whose exposure is not known since it was changed
   int silent_sessions_ = 0;  // one after another
 
   mutable std::mutex mutex_;  // guards everything below; held for moments only, never while a device is asked
@@ -88,6 +91,8 @@ class WatchedSource final : public CaptureSource {
   std::chrono::nanoseconds period_{0};  // nominal, or as measured where that is longer
   bool first_frame_ = false;            // of this session, has come
   bool has_signal_ = false;
+  double wanted_exposure_us_ = 0,
+         set_exposure_us_ = 0;  // since the start, of this session; 0: as it was opened
   CaptureCounters counters_;
   bool delivered_before_ = false;
   SourceState state_ = SourceState::no_device;

@@ -220,6 +220,19 @@ TEST_F(AravisFaults, ChangedExposureIsNoticed) {
   EXPECT_TRUE(frame_where([](const FrameLease& lease) { return lease.info().exposure_us == 3000; }));
 }
 
+TEST_F(AravisFaults, ExposureIsChangedWhileFramesComeAndComesBackWithTheCamera) {
+  source_ = source();
+  EXPECT_FALSE(source_->set_exposure_us(3000)) << "there is no camera";
+  camera();
+  ASSERT_TRUE(frame_where([](const FrameLease& lease) { return lease.info().exposure_us == 1000; }));
+  ASSERT_TRUE(source_->set_exposure_us(3000));
+  ASSERT_TRUE(frame_where([](const FrameLease& lease) { return lease.info().exposure_us == 3000; }));
+  camera_.reset();
+  ASSERT_TRUE(eventually([&] { return source_->state() != SourceState::streaming; }));
+  camera();
+  EXPECT_TRUE(frame_where([](const FrameLease& lease) { return lease.info().exposure_us == 3000; }));
+}
+
 TEST_F(AravisFaults, DeviceIsDiscoveredAndItsControlSeen) {
   camera(64, 48, 100, "SERIAL7");
   const auto found = gvcp_discover(300ms);

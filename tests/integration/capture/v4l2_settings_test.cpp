@@ -194,6 +194,29 @@ TEST_F(V4l2Settings, ExposureChangedBySomebodyElseIsNoticed) {
   }));
 }
 
+TEST_F(V4l2Settings, ExposureIsChangedWhileFramesComeAndFramesUnderWayAreLeftOut) {
+  begin();
+  ASSERT_TRUE(deliver());
+  ASSERT_TRUE(next());
+  const std::uint64_t skipped = source_->counters().skipped;
+  ASSERT_TRUE(source_->set_exposure_us(7000));
+  EXPECT_TRUE(eventually([&] {
+    device_->deliver();
+    const FrameLease lease = source_->wait(50ms);
+    return lease && lease.info().exposure_us == 7000;
+  }));
+  EXPECT_GE(source_->counters().skipped, skipped + 3);
+  // Out of range: said, and the frames go on as they were.
+  ASSERT_TRUE(source_->set_exposure_us(1e12));
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(deliver());
+    const FrameLease lease = source_->wait(50ms);
+    if (lease) {
+      EXPECT_EQ(lease.info().exposure_us, 7000);
+    }
+  }
+}
+
 TEST_F(V4l2Settings, AutomaticExposureIsFollowed) {
   FakeV4l2Model model;
   model.controls[V4L2_CID_EXPOSURE_AUTO] = {
