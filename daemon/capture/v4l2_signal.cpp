@@ -38,20 +38,13 @@ std::string V4l2Device::missing_signal() const {
   const auto* const words = reinterpret_cast<const char*>(input->name);
   const std::string where = "input " + std::string(words, ::strnlen(words, sizeof input->name));
   if ((input->status & V4L2_IN_ST_NO_POWER) != 0) return where + " has no power";
-  if ((input->status & V4L2_IN_ST_NO_SIGNAL) != 0) return where + " has no signal";
-  if ((input->status & (V4L2_IN_ST_NO_SYNC | V4L2_IN_ST_NO_H_LOCK | V4L2_IN_ST_NO_V_LOCK)) != 0)
-    return where + " finds no lock on its signal";
   v4l2_dv_timings there{};
-  switch (has_timings(input) ? -ioctl(VIDIOC_QUERY_DV_TIMINGS, &there) : 0) {
-    case ENOLINK:
-      return where + " has no signal";
-    case ENOLCK:
-      return where + " finds no lock on its signal";
-    case ERANGE:
-      return where + " has a signal that the device cannot take";
-    default:
-      return {};
-  }
+  const int found = has_timings(input) ? -ioctl(VIDIOC_QUERY_DV_TIMINGS, &there) : 0;
+  if (found == ERANGE) return where + " has a signal that the device cannot take";
+  if (found == ENOLINK || (input->status & V4L2_IN_ST_NO_SIGNAL) != 0) return where + " has no signal";
+  constexpr std::uint32_t kNoLock = V4L2_IN_ST_NO_SYNC | V4L2_IN_ST_NO_H_LOCK | V4L2_IN_ST_NO_V_LOCK;
+  if (found == ENOLCK || (input->status & kNoLock) != 0) return where + " finds no lock on its signal";
+  return {};
 }
 
 bool V4l2Device::is_following_signal() const {

@@ -238,6 +238,37 @@ TEST_F(V4l2Drivers, InputWithoutSignalIsNoSignal) {
   turn("", 0);
 }
 
+TEST_F(V4l2Drivers, DigitalSignalIsFollowedInSizeAndMissedWhenItGoes) {
+  // Input 3 is HDMI. Frames of 640×480 are what an emulated processor makes in good time.
+  turn("dv_timings_signal_mode=Selected DV Timings, dv_timings=640x480p59", 3);
+  CaptureOptions options;
+  options.pixel_format = "Mono8";
+  options.exposure_us = 1000;
+  begin(kVivid, options);
+  const auto width_becomes = [&](int width) {
+    return eventually([&] {
+      const FrameLease lease = source_->wait(100ms);
+      return lease && lease.info().format.width == width;
+    });
+  };
+  EXPECT_TRUE(width_becomes(640)) << source_->describe();
+  turn("dv_timings=720x480p59");
+  EXPECT_TRUE(width_becomes(720)) << source_->describe();
+  turn("dv_timings_signal_mode=No Signal");
+  EXPECT_TRUE(state_becomes(SourceState::no_signal)) << source_->describe();
+  EXPECT_THAT(source_->describe(), HasSubstr("has no signal"));
+  turn("dv_timings_signal_mode=Out of Range");
+  EXPECT_TRUE(eventually([&] {
+    static_cast<void>(source_->wait(0ms));
+    return source_->describe().find("a signal that the device cannot take") != std::string::npos;
+  })) << source_->describe();
+  turn("dv_timings_signal_mode=Selected DV Timings");
+  EXPECT_TRUE(width_becomes(720)) << source_->describe();
+  source_->stop();
+  turn("dv_timings_signal_mode=Current DV Timings", 3);
+  turn("", 0);
+}
+
 TEST_F(V4l2Drivers, ContentArrivesExactly) {
   constexpr int kWidth = 66, kHeight = 50;
   LoopbackWriter writer(kLoopback, V4L2_PIX_FMT_Y16, kWidth, kHeight);
