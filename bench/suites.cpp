@@ -52,7 +52,6 @@ const std::vector<Suite>& suites() {
       {"fit", fit_suite, fit_figures},
       {"lens", lens_suite},
       {"response", response_suite},
-      {"sync", sync_suite},
       {"render", render_suite, render_figures},
       // Hundreds of rows: the lights suite has their plot, as means.
       {"coherence", coherence_suite, [](const std::vector<Row>&) { return std::vector<Figure>(); }},

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/assembly.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <optional>
@@ -107,11 +109,53 @@ std::optional<FewLightsOptions> fit_options(const Configuration& configuration) 
   return options;
 }
 
+Result<std::optional<GpioOptions>> gpio_options(const Configuration& configuration) {
+  const auto& given = configuration.board;
+  const auto refuse = [](const std::string& key, const std::string& value, const std::string& allowed) {
+    return Error{ErrorKind::usage, "board." + key + " = \"" + value + "\"; allowed: " + allowed};
+  };
+  const auto chip = after_kind(given.address, "gpio");
+  if (!chip) {
+    if (!given.trigger_line.empty())
+      return refuse("trigger_line", given.trigger_line, "with address gpio:/dev/gpiochipN alone");
+    if (!given.strobe_line.empty())
+      return refuse("strobe_line", given.strobe_line, "with address gpio:/dev/gpiochipN alone");
+    return std::optional<GpioOptions>();
+  }
+  if (chip->empty()) return refuse("address", given.address, "gpio:/dev/gpiochipN");
+  if (given.trigger_line.empty() && given.strobe_line.empty())
+    return refuse("trigger_line", "", "with address gpio it, strobe_line or both: a line's number or name");
+  if (given.trigger_line == given.strobe_line)
+    return refuse("strobe_line", given.strobe_line, "another line than trigger_line");
+  if (given.reference != "none")
+    return refuse("reference", given.reference, "none with address gpio; a sync board follows references");
+  if (given.avoid_flicker) return refuse("avoid_flicker", "true", "false with address gpio");
+  if (!given.axes.empty()) return refuse("axes", given.axes, "empty with address gpio");
+  GpioOptions options{*chip, given.trigger_line, given.strobe_line, {}};
+  if (given.trigger_line.empty()) {
+    if (given.trigger_rate.empty()) return std::optional(options);
+    return refuse("trigger_rate", given.trigger_rate, "empty without trigger_line");
+  }
+  const auto rate = rate_of("board.trigger_rate", given.trigger_rate);
+  if (!rate) return rate.error();
+  const double rate_hz = static_cast<double>(rate->first) / rate->second;
+  if (rate_hz < 1 || rate_hz > 1000)
+    return refuse("trigger_rate", given.trigger_rate, "1 to 1000 a second with address gpio");
+  std::tie(options.pulses.rate_numerator, options.pulses.rate_denominator) = *rate;
+  const double longest_us = 0.5e6 / rate_hz;
+  if (given.pulse_us > longest_us)
+    return refuse("pulse_us", fmt::format("{:g}", given.pulse_us),
+                  fmt::format("at most {:g}, half the trigger's period, with address gpio", longest_us));
+  options.pulses.pulse_ns = static_cast<std::uint32_t>(
+      given.pulse_us > 0 ? given.pulse_us * 1e3 : std::min(500.0, longest_us / 2) * 1e3);
+  return std::optional(options);
+}
+
 Result<std::optional<BoardOptions>> board_options(const Configuration& configuration) {
   const auto& given = configuration.board;
-  if (given.address.empty()) return std::optional<BoardOptions>();
+  if (given.address.empty() || after_kind(given.address, "gpio")) return std::optional<BoardOptions>();
   const auto address = parse_sync_address(given.address);
-  if (!address) return address.error();
+  if (!address) return Error{ErrorKind::usage, address.error().message + ", gpio:/dev/gpiochipN"};
   BoardOptions options;
   options.address = *address;
   const auto reference_rate = rate_of("board.reference_rate", given.reference_rate);

@@ -9,6 +9,7 @@
 #include "daemon/capture/capture_source.h"
 #include "daemon/configuration.h"
 #include "daemon/pipeline/frame_path.h"
+#include "daemon/sync/gpio_sync.h"
 #include "daemon/sync/sync_board.h"
 #include "lighting/calibration.h"
 #include "lighting/fit/few_lights.h"
@@ -29,6 +30,9 @@ std::optional<FewLightsOptions> fit_options(const Configuration& configuration);
 // pattern of the folder that cannot be read.
 Result<BoardUse::Options> board_use_options(const Configuration& configuration,
                                             const Calibration& calibration);
+// Empty where the address is none of GPIO lines. usage: lines, a rate or a pulse that do not go together, naming key, value
+// and what is allowed.
+Result<std::optional<GpioOptions>> gpio_options(const Configuration& configuration);
 // Empty where no board is configured. usage: an address or a rate that is none, naming key, value and what is allowed.
 Result<std::optional<BoardOptions>> board_options(const Configuration& configuration);
 

@@ -160,8 +160,10 @@ const std::vector<Key>& keys() {
       text("record.directory", "where takes are written", &C::record, &C::Record::directory),
       text("record.codec", "raw is fast, ffv1 small; both lossless", &C::record, &C::Record::codec,
            {"raw", "ffv1"}),
-      text("board.address", "sync board: usb, usb:SERIAL, serial:/dev/DEVICE; empty: none", &C::board,
-           &C::Board::address),
+      text("board.address",
+           "sync board: usb, usb:SERIAL, serial:/dev/DEVICE; lines of this machine: gpio:/dev/gpiochipN; "
+           "empty: none",
+           &C::board, &C::Board::address),
       text("board.trigger_rate", "triggers a second, N or N/D (30000/1001); empty: as the board has it",
            &C::board, &C::Board::trigger_rate),
       text("board.reference", "what triggers follow: nothing, pulses (PPS, genlock) or LTC", &C::board,
@@ -177,6 +179,10 @@ const std::vector<Key>& keys() {
            "(down) "
            "and z (lens), as \"x,-z,y\"; empty: it does not",
            &C::board, &C::Board::axes),
+      text("board.trigger_line", "gpio: the line that triggers the camera, by number or name; empty: none",
+           &C::board, &C::Board::trigger_line),
+      text("board.strobe_line", "gpio: the line that is high while the camera exposes; empty: none",
+           &C::board, &C::Board::strobe_line),
       text("http.listen", "ADDRESS:PORT of page and interface, loopback only", &C::http, &C::Http::listen),
       integer("dds.domain", "DDS domain", &C::dds, &C::Dds::domain, 0, kMaxDdsDomain),
       text("dds.interface", "network interface of DDS; lo stays on this machine", &C::dds,

@@ -77,6 +77,7 @@ struct Configuration {
     double pulse_us = 0;
     bool avoid_flicker = false;
     std::string axes;
+    std::string trigger_line, strobe_line;
     bool operator==(const Board&) const = default;
   } board;
   struct Http {

@@ -19,6 +19,7 @@
 #include "daemon/record/recorder.h"
 #include "daemon/record/take_name.h"
 #include "daemon/sync/exposure_stamper.h"
+#include "daemon/sync/gpio_sync.h"
 #include "daemon/sync/sync_board.h"
 #include "daemon/sync/temperature_stamper.h"
 #include "daemon/sync/timecode_stamper.h"
@@ -88,6 +89,7 @@ struct Daemon::Parts {
   std::unique_ptr<Publisher> publisher;
   std::unique_ptr<FitWorker> fits;
   std::unique_ptr<WebServer> web;
+  std::unique_ptr<GpioSync> gpio;       // null: the address is none of GPIO lines
   std::unique_ptr<SyncBoard> board;     // null: none is configured; its button asks the others
   std::unique_ptr<BoardUse> board_use;  // null with it
   std::string logged_mismatch;          // log_changes' own
@@ -101,6 +103,7 @@ Status Daemon::check(const Configuration& configuration) {
     if (!status) return status;
   const auto source = make_capture_source(configuration.source.address, capture_options(configuration));
   if (!source) return source.error();
+  if (const auto gpio = gpio_options(configuration); !gpio) return gpio.error();
   const auto calibration = choose_calibration(configuration);
   if (!calibration) return calibration.error();
   if (const auto use = board_use_options(configuration, *calibration); !use) return use.error();
@@ -112,6 +115,8 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Configuration& configuration
   if (!source) return source.error();
   auto board = board_options(configuration);
   if (!board) return board.error();
+  auto gpio = gpio_options(configuration);
+  if (!gpio) return gpio.error();
   auto calibration = choose_calibration(configuration);
   if (!calibration) return calibration.error();
   auto use = board_use_options(configuration, *calibration);
@@ -137,6 +142,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Configuration& configuration
       std::move(*source),
       std::make_shared<FramePath>(p.calibration, frame_path_options(configuration), p.snapshots));
   if (!started) return started.error();
+  if (*gpio) p.gpio = std::make_unique<GpioSync>(std::move(**gpio), p.strobes);
   if (*board) {
     (*board)->on_button = [d = daemon.get()](sync_press press) { d->take_button(press); };
     p.board = std::make_unique<SyncBoard>(std::move(**board), p.strobes, p.timecodes);
@@ -264,6 +270,11 @@ DaemonStatus Daemon::status() const {
   status.recording = {take.active, take.file, take.frames, take.dropped, take.bytes, take.error};
   std::error_code ignored;
   status.recording.directory = std::filesystem::absolute(record_directory, ignored).string();
+  if (parts_->gpio) {
+    status.board = parts_->gpio->view();
+    status.board.stamped = parts_->stamper.stamped();
+    status.board.left = parts_->stamper.left();
+  }
   if (parts_->board) {
     status.board = parts_->board->view();
     status.board.stamped = parts_->stamper.stamped();
