@@ -173,7 +173,7 @@ function showBoard(board) {
   const lamp = board.flicker && board.flicker.lamps[0];
   if (lamp) parts.push(`flicker ${number(lamp.frequency_hz, 1)} Hz, ${number(100 * lamp.depth, 1)} %`);
   if (board.avoiding) {
-    parts.push(`for it ${number(board.avoiding.rate_hz, 2)} Hz, ${number(board.avoiding.exposure_us / 1000, 2)} ms`);
+    parts.push(`avoided by ${number(board.avoiding.rate_hz, 4)} Hz and ${number(board.avoiding.exposure_us / 1000)} ms`);
   }
   if (board.temperature_c !== null) parts.push(`${number(board.temperature_c, 0)} °C`);
   if (board.refused) parts.push(`refused: ${board.refused}`);
