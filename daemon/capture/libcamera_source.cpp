@@ -8,10 +8,9 @@
 namespace lightwell {
 
 std::unique_ptr<CaptureSource> make_libcamera_source(const std::string& id, const CaptureOptions& options) {
-  // Kept between sessions: it hears of cameras that come and go.
-  const auto manager = std::make_shared<LibcameraManagerHold>();
+  const auto search = std::make_shared<LibcameraSearch>();
   return std::make_unique<WatchedSource>(
-      "libcamera", id, [=] { return std::make_unique<LibcameraSession>(manager, id, options); });
+      "libcamera", id, [=] { return std::make_unique<LibcameraSession>(search, id, options); });
 }
 
 }  // namespace lightwell

@@ -282,6 +282,7 @@ void WatchedSource::watch(CaptureSession& session) {
 
 // What no frame tells: signal and exposure.
 void WatchedSource::look_around(CaptureSession& session) {
+  forget_returned();
   const std::string missing = session.refresh();
   {
     const std::lock_guard lock(mutex_);

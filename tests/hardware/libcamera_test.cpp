@@ -3,15 +3,22 @@
 // The libcamera source on vimc, whose picture is colour bars through a simulated image processor.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "daemon/capture/capture_source.h"
 #include "daemon/capture/list_libcamera.h"
 #include "tests/support/eventually.h"
+#include "tests/support/resident_memory.h"
 
 namespace lightwell::test {
 namespace {
@@ -126,6 +133,65 @@ TEST_F(LibcameraOnVimc, CameraLostAndBackIsFoundAgain) {
                                     .count()));
   EXPECT_EQ(source_->counters().reconnects, 1U);
   EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), held.bytes().begin(), held.bytes().end()));
+}
+
+// Of the processes this one has started, those that own libcamera.
+std::vector<pid_t> libcamera_processes() {
+  std::vector<pid_t> list;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    std::string line;
+    std::getline(std::ifstream(entry.path() / "stat"), line);
+    int parent = 0;
+    char state = 0;
+    const std::size_t end = line.rfind(')');
+    if (end == std::string::npos || line.find("(lightwell-libca") == std::string::npos) continue;
+    if (std::sscanf(&line[end], ") %c %d", &state, &parent) == 2 && parent == ::getpid() && state != 'Z')
+      list.push_back(std::stoi(entry.path().filename().string()));
+  }
+  return list;
+}
+
+TEST_F(LibcameraOnVimc, ProcessThatDiesIsStartedAgain) {
+  begin(camera_.id, small());
+  const FrameLease held = next();
+  ASSERT_TRUE(held);
+  const std::vector<std::byte> bytes(held.bytes().begin(), held.bytes().end());
+  ASSERT_EQ(libcamera_processes().size(), 1U);
+  ::kill(libcamera_processes().front(), SIGABRT);
+  EXPECT_TRUE(says("libcamera's process ended by signal 6")) << source_->describe();
+  EXPECT_TRUE(eventually([&] { return source_->wait(100ms) && source_->counters().reconnects == 1; }))
+      << source_->describe();
+  EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), held.bytes().begin(), held.bytes().end()));
+  source_->stop();
+  EXPECT_TRUE(eventually([] { return libcamera_processes().empty(); }));
+}
+
+TEST_F(LibcameraOnVimc, LossesLeaveNothingBehind) {
+  begin(camera_.id, small());
+  ASSERT_TRUE(next());
+  const auto lose_and_find = [&] {
+    std::ofstream("/sys/bus/platform/drivers/vimc/unbind") << "vimc.0" << std::flush;
+    EXPECT_TRUE(eventually([&] {
+      static_cast<void>(source_->wait(0ms));
+      return source_->state() == SourceState::no_device;
+    })) << source_->describe();
+    std::ofstream("/sys/bus/platform/drivers/vimc/bind") << "vimc.0" << std::flush;
+    EXPECT_TRUE(next()) << source_->describe();
+  };
+  const auto descriptors = [] {
+    return std::distance(std::filesystem::directory_iterator("/proc/self/fd"),
+                         std::filesystem::directory_iterator());
+  };
+  lose_and_find();  // what is made once is made
+  const double before = resident_bytes();
+  const auto open_before = descriptors();
+  for (int i = 0; i < 4; ++i) {
+    lose_and_find();
+    std::printf("%.2f MB more after %d losses\n", (resident_bytes() - before) * 1e-6, i + 1);
+  }
+  EXPECT_LT(resident_bytes() - before, 2e6);  // a manager left behind would be megabytes, each time
+  EXPECT_EQ(descriptors(), open_before);
+  EXPECT_EQ(libcamera_processes().size(), 1U);
 }
 
 }  // namespace
