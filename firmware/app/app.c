@@ -3,6 +3,7 @@
 #include "firmware/app/app.h"
 
 #include "firmware/core/board.h"
+#include "firmware/core/board_requests.h"
 #include "firmware/hal/hal.h"
 
 static board self;
@@ -58,6 +59,7 @@ void app_poll(void) {
   move_edges();
   move_samples();
   move_bytes();
+  board_finish_update(&self);
   hal_led(board_led(&self));
   hal_camera_power(board_camera_power(&self));
   hal_watchdog();

@@ -4,8 +4,7 @@
 
 #include "firmware/core/settings.h"
 #include "firmware/core/settings_store.h"
-
-enum { kMajor = 0, kMinor = 2, kPatch = 0 };
+#include "firmware/core/version.h"
 
 static void refuse(board* self, uint8_t code, uint8_t type, uint8_t field, int64_t minimum, int64_t maximum) {
   const sync_message message = {
@@ -19,7 +18,7 @@ static void say_hello(board* self) {
   const sync_message message = {.type = SYNC_HELLO,
                                 .hello = {.schema_hash = SYNC_SCHEMA_HASH,
                                           .capabilities = facts->capabilities,
-                                          .version = {kMajor, kMinor, kPatch},
+                                          .version = {FIRMWARE_MAJOR, FIRMWARE_MINOR, FIRMWARE_PATCH},
                                           .slot = facts->slot,
                                           .tick_hz = facts->tick_hz,
                                           .serial = {facts->serial[0], facts->serial[1], facts->serial[2]}}};
@@ -77,7 +76,8 @@ static void take_host_state(board* self, uint8_t state) {
     self->host_state = state;
 }
 
-static void answer_update(board* self, uint8_t type, uint8_t code) {
+// Apart from board_finish_update, whose frame lies under the verifier's.
+__attribute__((noinline)) static void answer_update(board* self, uint8_t type, uint8_t code) {
   if (code != 0u) {
     const int64_t awaited = code == SYNC_FAULT_SEQUENCE ? self->images.next : 0;
     const int64_t most =
@@ -103,7 +103,11 @@ static void take_update(board* self, const sync_message* request) {
     code = update_block(&self->images, &request->update_block);
   else
     code = update_finish(&self->images, &request->update_finish);
-  answer_update(self, request->type, code);
+  if (code != 0u || request->type != SYNC_UPDATE_FINISH) answer_update(self, request->type, code);
+}
+
+void board_finish_update(board* self) {
+  if (self->images.unverified) answer_update(self, SYNC_UPDATE_FINISH, update_verify(&self->images));
 }
 
 static void answer(board* self, const sync_message* request) {

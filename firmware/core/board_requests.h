@@ -15,6 +15,10 @@ void board_answer(board* self, const frame_view* frame);
 // Whether a frame is a good HELLO_REQUEST: with it a host takes the board over.
 bool board_is_hello(const frame_view* frame);
 
+// An image that has come is verified (a tenth of a second) and the host answered. Apart from board_answer, and to be called
+// from the top of the loop, for a signature needs most of the stack.
+void board_finish_update(board* self);
+
 #ifdef __cplusplus
 }
 #endif

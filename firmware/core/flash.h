@@ -17,7 +17,7 @@ enum { FLASH_ERASED = 0xFF };
 
 typedef struct flash {
   void* context;
-  // offset and size are multiples of 4 and lie within one region of the port's. False: the chip says it failed.
+  // offset and size lie within one region of the port's; of a write they are multiples of 4. False: the chip says it failed.
   bool (*erase)(void* context, uint32_t region);
   bool (*write)(void* context, uint32_t region, uint32_t offset, const uint8_t* bytes, uint32_t size);
   void (*read)(void* context, uint32_t region, uint32_t offset, uint8_t* bytes, uint32_t size);

@@ -86,6 +86,7 @@ uint8_t update_begin(update* self, const sync_update_begin* request) {
   if (request->size == 0u || request->size > self->region_size - (uint32_t)UPDATE_TRAILER)
     return SYNC_FAULT_RANGE;
   self->step = SYNC_UPDATE_NONE;
+  self->unverified = false;
   if (!self->memory->erase(self->memory->context, target(self))) return SYNC_FAULT_FLASH;
   self->size = request->size;
   self->next = 0;
@@ -112,9 +113,13 @@ uint8_t update_block(update* self, const sync_update_block* request) {
 uint8_t update_finish(update* self, const sync_update_finish* request) {
   if (self->step != SYNC_UPDATE_RECEIVING || self->next < self->size) return SYNC_FAULT_SEQUENCE;
   self->step = SYNC_UPDATE_NONE;
-  if (!self->verifier->verify(self->verifier->context, target(self), self->size, self->version,
-                              request->signature))
-    return SYNC_FAULT_SIGNATURE;
+  for (unsigned i = 0; i < (unsigned)SYNC_SIGNATURE_BYTES; ++i) self->signature[i] = request->signature[i];
+  self->unverified = true;
+  return 0;
+}
+
+// Apart from update_verify, whose frame lies under the verifier's.
+__attribute__((noinline)) static uint8_t write_record(update* self) {
   image_record running;
   const bool known = read_record(self->memory, self->running, self->region_size, &running);
   uint8_t bytes[kRecord] = {0};
@@ -123,7 +128,7 @@ uint8_t update_finish(update* self, const sync_update_finish* request) {
   for (unsigned i = 0; i < 3u; ++i) bytes[(unsigned)kVersionAt + i] = self->version[i];
   put(bytes + kGenerationAt, known ? running.generation + 1u : 1u);
   for (unsigned i = 0; i < (unsigned)SYNC_SIGNATURE_BYTES; ++i)
-    bytes[(unsigned)kSignatureAt + i] = request->signature[i];
+    bytes[(unsigned)kSignatureAt + i] = self->signature[i];
   put(bytes + kCrcAt, flash_crc32(0, bytes, kCrcAt));
   const uint32_t trailer = self->region_size - (uint32_t)UPDATE_TRAILER;
   if (!self->memory->write(self->memory->context, target(self), trailer, bytes, kRecord) ||
@@ -131,6 +136,14 @@ uint8_t update_finish(update* self, const sync_update_finish* request) {
     return SYNC_FAULT_FLASH;
   self->step = SYNC_UPDATE_PENDING;
   return 0;
+}
+
+uint8_t update_verify(update* self) {
+  self->unverified = false;
+  if (!self->verifier->verify(self->verifier->context, target(self), self->size, self->version,
+                              self->signature))
+    return SYNC_FAULT_SIGNATURE;
+  return write_record(self);
 }
 
 bool update_confirm(const update* self) {
@@ -143,23 +156,25 @@ bool update_confirm(const update* self) {
 
 uint32_t update_choose(const flash* memory, const update_verifier* verifier, uint32_t region_size) {
   image_record records[2] = {{0}};
-  bool usable[2];
-  for (uint32_t i = 0; i < 2u; ++i) {
-    const uint32_t region = (uint32_t)FLASH_IMAGE_A + i;
-    usable[i] = read_record(memory, region, region_size, &records[i]) &&
-                verifier->verify(verifier->context, region, records[i].size, records[i].version,
-                                 records[i].signature);
-  }
+  bool whole[2];
+  for (uint32_t i = 0; i < 2u; ++i)
+    whole[i] = read_record(memory, (uint32_t)FLASH_IMAGE_A + i, region_size, &records[i]);
   const bool second_newer = (int32_t)(records[1].generation - records[0].generation) > 0;
-  uint32_t first = usable[1] && (!usable[0] || second_newer) ? 1u : 0u;
+  uint32_t first = whole[1] && (!whole[0] || second_newer) ? 1u : 0u;
   // Tried and not confirmed: the other one, if there is one. Where both failed so, the newer is tried again.
-  if (usable[first] && records[first].tried && !records[first].confirmed && usable[1u - first] &&
+  if (whole[first] && records[first].tried && !records[first].confirmed && whole[1u - first] &&
       (records[1u - first].confirmed || !records[1u - first].tried))
     first = 1u - first;
-  if (!usable[first]) return FLASH_REGIONS;
-  const uint32_t region = (uint32_t)FLASH_IMAGE_A + first;
-  // If the mark cannot be written the image runs all the same: to run is better than not.
-  if (!records[first].tried)
-    (void)write_word(memory, region, region_size - (uint32_t)UPDATE_TRAILER + (uint32_t)kTriedAt, kTried);
-  return region;
+  for (uint32_t i = 0; i < 2u; ++i) {
+    const uint32_t chosen = i == 0u ? first : 1u - first;
+    const uint32_t region = (uint32_t)FLASH_IMAGE_A + chosen;
+    if (!whole[chosen] || !verifier->verify(verifier->context, region, records[chosen].size,
+                                            records[chosen].version, records[chosen].signature))
+      continue;
+    // If the mark cannot be written the image runs all the same: to run is better than not.
+    if (!records[chosen].tried)
+      (void)write_word(memory, region, region_size - (uint32_t)UPDATE_TRAILER + (uint32_t)kTriedAt, kTried);
+    return region;
+  }
+  return FLASH_REGIONS;
 }

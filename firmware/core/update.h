@@ -9,7 +9,8 @@
 //   finish:  the image in flash is verified, then the record is written, then `whole`. Before that word the region does
 //            not count; a word is written by one flash operation.
 //   boot:    of the regions whose record is whole and whose image verifies, the newest runs, unless it was tried and never
-//            confirmed. `tried` is written before it runs.
+//            confirmed. `tried` is written before it runs. Signatures are verified at every start: flash that has changed
+//            since is not run either.
 //   confirm: an image that has talked to its host for a while writes `confirmed`.
 // So a power cut at any step leaves what ran before, and an image that starts but does not work is left at the next start.
 
@@ -41,6 +42,8 @@ typedef struct {
   uint32_t running;      // FLASH_IMAGE_A or _B
   uint32_t size, next;
   uint8_t version[3];
+  uint8_t signature[SYNC_SIGNATURE_BYTES];
+  bool unverified;  // the image is here: update_verify is to be called
   sync_update_step step;
 } update;
 
@@ -51,6 +54,10 @@ void update_init(update* self, const flash* memory, const update_verifier* verif
 uint8_t update_begin(update* self, const sync_update_begin* request);
 uint8_t update_block(update* self, const sync_update_block* request);
 uint8_t update_finish(update* self, const sync_update_finish* request);
+
+// The second half of finish, apart because a signature needs most of the stack: call it from the top of the loop while
+// unverified is set. Returns as the others do.
+uint8_t update_verify(update* self);
 
 // The running image works. Writes nothing where that is known already. False: flash failed.
 bool update_confirm(const update* self);

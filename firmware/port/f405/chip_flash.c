@@ -1,10 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-// The chip's own flash: sectors 1 and 2, of 16 KB, hold the settings. An erase stops the core for about 0.3 s.
+// The chip's own flash. An erase stops the core: for 0.3 s of 16 KB, for one to two seconds of 128.
 #include "firmware/port/f405/port.h"
 #include "firmware/port/f405/registers.h"
 
-enum { kSector = 16384, kFirst = 0x08004000, kPatience = 20000000 };
+typedef struct {
+  uint32_t address, size;
+  uint32_t sector;
+} chip_region;
+
+static const chip_region kRegions[FLASH_REGIONS] = {[FLASH_SETTINGS_A] = {0x08004000u, 16384u, 1u},
+                                                    [FLASH_SETTINGS_B] = {0x08008000u, 16384u, 2u},
+                                                    [FLASH_IMAGE_A] = {0x08010000u, CHIP_IMAGE_REGION, 4u},
+                                                    [FLASH_IMAGE_B] = {0x08020000u, CHIP_IMAGE_REGION, 5u}};
+
+enum { kPatience = 60000000 };
 enum { kErrors = 0xF2, kProgram = 1, kErase = 2, kWords = 2 << 8, kGo = 1 << 16 };
 static const uint32_t kBusy = 1u << 16;
 static const uint32_t kLock = 1u << 31;
@@ -26,26 +36,31 @@ static void unlock(uint32_t mode) {
   FLASH_CONTROLLER->control = mode | (uint32_t)kWords;
 }
 
-static uint32_t start_of(uint32_t region) {
-  return (uint32_t)kFirst + region * (uint32_t)kSector;
+static bool lies_within(uint32_t region, uint32_t offset, uint32_t size) {
+  return region < (uint32_t)FLASH_REGIONS && offset <= kRegions[region].size &&
+         size <= kRegions[region].size - offset;
+}
+
+uint32_t chip_flash_address(uint32_t region) {
+  return kRegions[region].address;
 }
 
 static bool chip_erase(void* context, uint32_t region) {
   (void)context;
-  if (region > (uint32_t)FLASH_SETTINGS_B) return false;
-  unlock((uint32_t)kErase | (region + 1u) << 3);
+  if (!lies_within(region, 0, 0)) return false;
+  unlock((uint32_t)kErase | kRegions[region].sector << 3);
   FLASH_CONTROLLER->control |= kGo;
   return finish();
 }
 
 static bool chip_write(void* context, uint32_t region, uint32_t offset, const uint8_t* bytes, uint32_t size) {
   (void)context;
-  if (region > (uint32_t)FLASH_SETTINGS_B || offset + size > (uint32_t)kSector) return false;
+  if (!lies_within(region, offset, size)) return false;
   for (uint32_t i = 0; i < size; i += 4u) {
     const uint32_t word = (uint32_t)bytes[i] | (uint32_t)bytes[i + 1u] << 8 | (uint32_t)bytes[i + 2u] << 16 |
                           (uint32_t)bytes[i + 3u] << 24;
     unlock(kProgram);
-    *(reg*)(uintptr_t)(start_of(region) + offset + i) = word;
+    *(reg*)(uintptr_t)(kRegions[region].address + offset + i) = word;
     if (!finish()) return false;
   }
   return true;
@@ -53,10 +68,10 @@ static bool chip_write(void* context, uint32_t region, uint32_t offset, const ui
 
 static void chip_read(void* context, uint32_t region, uint32_t offset, uint8_t* bytes, uint32_t size) {
   (void)context;
+  const bool within = lies_within(region, offset, size);
   for (uint32_t i = 0; i < size; ++i)
-    bytes[i] = region > (uint32_t)FLASH_SETTINGS_B || offset + i >= (uint32_t)kSector
-                   ? (uint8_t)FLASH_ERASED
-                   : *(const volatile uint8_t*)(uintptr_t)(start_of(region) + offset + i);
+    bytes[i] = within ? *(const volatile uint8_t*)(uintptr_t)(kRegions[region].address + offset + i)
+                      : (uint8_t)FLASH_ERASED;
 }
 
 const flash chip_flash = {.context = NULL, .erase = chip_erase, .write = chip_write, .read = chip_read};

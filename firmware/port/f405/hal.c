@@ -10,7 +10,8 @@ enum { kSampleHz = 8000, kLed = 12, kButton = 13, kCamera = 14 };
 enum { kHsiReady = 1 << 1 };
 enum { kOutput = 1, kAlternate = 2, kAnalog = 3 };
 
-static const update_verifier kNoVerifier = {.context = NULL, .verify = update_verify_none};
+extern uint32_t image_start;  // of the linker: where this image lies
+
 static board_facts facts;
 
 static void pin_mode(gpio* port, unsigned pin, uint32_t mode) {
@@ -60,19 +61,19 @@ const board_facts* hal_init(void) {
   light_start(clock_hz, kSampleHz);
   sensors_start(clock_hz);
   interrupts_start();
-  WATCHDOG->key = 0x5555u;
-  WATCHDOG->prescaler = 4;   // 32 kHz / 64
-  WATCHDOG->reload = 2000u;  // 4 s
-  WATCHDOG->key = 0xCCCCu;
-  facts = (board_facts){.tick_hz = clock_hz,
-                        .capabilities = SYNC_CAN_TRIGGER | SYNC_CAN_STROBE | SYNC_CAN_REFERENCE |
-                                        SYNC_CAN_TIMECODE | SYNC_CAN_PHOTODIODE | SYNC_CAN_IMU |
-                                        SYNC_CAN_TEMPERATURE | SYNC_CAN_BUTTON | SYNC_CAN_CAMERA_POWER |
-                                        SYNC_CAN_STORE,
-                        .sample_hz = kSampleHz,
-                        .highest_code = 4095,
-                        .memory = &chip_flash,
-                        .verifier = &kNoVerifier};
+  watchdog_start();
+  facts =
+      (board_facts){.tick_hz = clock_hz,
+                    .capabilities = SYNC_CAN_TRIGGER | SYNC_CAN_STROBE | SYNC_CAN_REFERENCE |
+                                    SYNC_CAN_TIMECODE | SYNC_CAN_PHOTODIODE | SYNC_CAN_IMU |
+                                    SYNC_CAN_TEMPERATURE | SYNC_CAN_BUTTON | SYNC_CAN_CAMERA_POWER |
+                                    SYNC_CAN_STORE | (chip_verifier() != NULL ? SYNC_CAN_UPDATE : 0),
+                    .slot = (uint32_t)(uintptr_t)&image_start == chip_flash_address(FLASH_IMAGE_B) ? 1u : 0u,
+                    .sample_hz = kSampleHz,
+                    .highest_code = 4095,
+                    .memory = &chip_flash,
+                    .verifier = chip_verifier(),
+                    .image_region_size = CHIP_IMAGE_REGION};
   // Silicon always reports its internal oscillator; an emulator that models no clocks has no identity to read either.
   if ((CLOCKS->control & (uint32_t)kHsiReady) != 0u)
     for (unsigned i = 0; i < 3u; ++i) facts.serial[i] = UNIQUE_ID[i];
@@ -94,8 +95,4 @@ void hal_camera_power(bool on) {
 
 uint32_t hal_overruns(void) {
   return edges_overruns() + uart_overruns() + light_overruns();
-}
-
-void hal_watchdog(void) {
-  WATCHDOG->key = 0xAAAAu;
 }

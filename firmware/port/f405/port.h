@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 #include "firmware/core/flash.h"
+#include "firmware/core/update.h"
 
 // The 168 MHz of the PLL, and with it 84 MHz for timers and USART1; without crystal and PLL 16 MHz. Returns the timers' rate.
 uint32_t clocks_start(void);
@@ -38,5 +39,11 @@ uint32_t light_overruns(void);
 
 void sensors_start(uint32_t clock_hz);
 
-// The two copies of the settings. Image regions cannot be written: this board has no boot program.
+// The chip's flash: copies of the settings in sectors 1 and 2, images with their records in sectors 4 and 5.
+enum { CHIP_IMAGE_REGION = 65536 };
 extern const flash chip_flash;
+uint32_t chip_flash_address(uint32_t region);  // where a region begins
+
+const update_verifier* chip_verifier(void);  // null: this build has none, and takes no updates
+
+void watchdog_start(void);  // 4 s, from then on to the next reset

@@ -70,6 +70,7 @@ typedef struct {
 #define WATCHDOG ((watchdog*)0x40003000u)
 #define NVIC_ENABLE ((reg*)0xE000E100u)
 #define NVIC_PRIORITY ((volatile uint8_t*)0xE000E400u)
+#define VECTOR_TABLE (*(reg*)0xE000ED08u)
 #define COPROCESSOR_ACCESS (*(reg*)0xE000ED88u)
 #define UNIQUE_ID ((reg*)0x1FFF7A10u)
 

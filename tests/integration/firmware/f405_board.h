@@ -5,6 +5,8 @@
 // The STM32F405 with all that the image uses wired to it.
 
 #include <array>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -49,9 +51,9 @@ class FrameLine {
 
 class F405Board {
  public:
-  explicit F405Board(const std::vector<std::string>& images, bool crystal = true)
-      : chip(images),
-        clocks(crystal),
+  // As it leaves the bench: the boot program, and image A with its record. folder: of the firmware's build.
+  explicit F405Board(const std::string& folder, bool crystal = true)
+      : clocks(crystal),
         flash(chip),
         edges(gpio[0]),
         light(chip),
@@ -71,6 +73,13 @@ class F405Board {
     chip.add(0x40023C00, 0x400, flash);
     chip.add(0x40026400, 0x400, light.dma, 56);
     chip.add(0x50000000, 0x40000, usb, 67);
+    chip.load_program(folder + "/lightwell-boot-f405.elf");
+    chip.load_program(folder + "/lightwell-sync-f405-a.elf");
+    chip.load_program(folder + "/lightwell-sync-f405-b.elf", false);
+    std::ifstream record(folder + "/lightwell-sync-f405-a.bin",
+                         std::ios::binary);  // absent: built without a verifier
+    if (record)
+      chip.load_bytes({std::istreambuf_iterator<char>(record), {}}, Stm32F405Flash::sector_start(4));
     chip.reset();
   }
 

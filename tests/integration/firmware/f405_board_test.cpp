@@ -26,7 +26,7 @@ class F405 : public testing::Test {
       if (!have(program)) GTEST_SKIP() << program << " is not installed";
     const std::string folder = built_firmware();
     ASSERT_FALSE(folder.empty());
-    board = std::make_unique<F405Board>(std::vector{folder + "/lightwell-sync-f405.elf"});
+    board = std::make_unique<F405Board>(folder);
     start();
   }
   void TearDown() override {

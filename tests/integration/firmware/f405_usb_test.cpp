@@ -22,7 +22,7 @@ class F405Usb : public testing::Test {
       if (!have(program)) GTEST_SKIP() << program << " is not installed";
     const std::string folder = built_firmware();
     ASSERT_FALSE(folder.empty());
-    board = std::make_unique<F405Board>(std::vector{folder + "/lightwell-sync-f405.elf"});
+    board = std::make_unique<F405Board>(folder);
     if (!board->chip.has_symbol("tud_task"))
       GTEST_SKIP() << "built without TinyUSB, which could not be fetched";
     ASSERT_TRUE(board->chip.run(1, [&] { return board->usb.attached(); }));
@@ -219,7 +219,7 @@ TEST_F(F405Usb, TheHostMayMoveBetweenUsbAndUart) {
 }
 
 TEST_F(F405Usb, WithoutACrystalOnlyTheUartAnswers) {
-  F405Board plain({built_firmware() + "/lightwell-sync-f405.elf"}, false);
+  F405Board plain(built_firmware(), false);
   plain.chip.run(0.3);  // it waits for the crystal
   const auto* hello = plain.ask_uart(message_of(SYNC_HELLO_REQUEST), SYNC_HELLO);
   ASSERT_NE(hello, nullptr);

@@ -17,6 +17,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -78,9 +79,11 @@ class Socket {
 
 class Emulator {
  public:
-  Emulator(const std::string& machine, const std::string& image, bool stimulus) {
+  Emulator(const std::string& machine, const std::string& image, bool stimulus,
+           const std::vector<std::string>& more = {}) {
     std::vector<std::string> words = {"qemu-system-arm", "-M",       machine, "-kernel", image,
                                       "-nographic",      "-monitor", "none"};
+    words.insert(words.end(), more.begin(), more.end());
     if (stimulus) words.insert(words.end(), {"-icount", "shift=3,sleep=off"});
     for (const char* name : {"link", "stimulus"}) {
       words.insert(
@@ -322,25 +325,31 @@ TEST_F(FirmwareImage, FollowsAReferenceAndPairsStrobes) {
 // Clocks, converter, DMA and I2C are stubs there that read 0: what is shown is that the image starts, none of its waits is
 // endless, and its interrupts and serial line work.
 TEST_F(FirmwareImage, TheStm32ImageStartsAndAnswers) {
-  Emulator emulator("netduinoplus2", image("lightwell-sync-f405.elf"), false);
+  // The boot program finds image A as a programmer leaves it: with its record, where the build could sign it.
+  const bool is_signed = std::filesystem::exists(image("lightwell-sync-f405-a.bin"));
+  const std::string program = is_signed ? image("lightwell-sync-f405-a.bin") + ",addr=0x08010000,force-raw=on"
+                                        : image("lightwell-sync-f405-a.elf");
+  Emulator emulator("netduinoplus2", image("lightwell-boot-f405.elf"), false,
+                    {"-device", "loader,file=" + program});
   ASSERT_TRUE(emulator.connected);
   const auto hello = emulator.ask(SYNC_HELLO_REQUEST, SYNC_HELLO);
   ASSERT_TRUE(hello);
   EXPECT_EQ(hello->hello.schema_hash, SYNC_SCHEMA_HASH);
-  EXPECT_EQ(hello->hello.capabilities & SYNC_CAN_UPDATE, 0u);  // it has no verifier
+  EXPECT_EQ(hello->hello.slot, 0);
+  EXPECT_EQ((hello->hello.capabilities & SYNC_CAN_UPDATE) != 0, is_signed);
   sync_message begin{};
   begin.type = SYNC_UPDATE_BEGIN;
-  begin.update_begin.size = 1;
   const auto refused = emulator.ask(begin, SYNC_FAULT);
   ASSERT_TRUE(refused);
-  EXPECT_EQ(refused->fault.code, SYNC_FAULT_UNSUPPORTED);
+  EXPECT_EQ(refused->fault.code, is_signed ? SYNC_FAULT_RANGE : SYNC_FAULT_UNSUPPORTED);
 }
 
 // Flash and RAM are held to 64 and 16 KB by the linker scripts.
 TEST_F(FirmwareImage, EveryFrameIsKnownAndTheDeepestStackFits) {
   for (const char* program : {"python3", "arm-none-eabi-objdump"})
     if (!have(program)) GTEST_SKIP() << program << " is not installed";
-  for (const char* name : {"lightwell-sync-f405", "lightwell-sync-mps2"}) {
+  for (const char* name :
+       {"lightwell-boot-f405", "lightwell-sync-f405-a", "lightwell-sync-f405-b", "lightwell-sync-mps2"}) {
     const std::string command = LIGHTWELL_SOURCE_DIR "/scripts/firmware-stack " + folder_ + " " + name;
     EXPECT_EQ(std::system(command.c_str()), 0) << name;
     EXPECT_NE(std::system((command + " 256 >/dev/null").c_str()), 0) << "a limit that is passed must be said";

@@ -28,7 +28,7 @@ void check(uc_err error) {
 
 }  // namespace
 
-Stm32F405::Stm32F405(const std::vector<std::string>& images) {
+Stm32F405::Stm32F405() {
   check(uc_open(UC_ARCH_ARM, static_cast<uc_mode>(UC_MODE_THUMB | UC_MODE_MCLASS), &engine_));
   check(uc_ctl_set_cpu_model(engine_, UC_CPU_ARM_CORTEX_M4));
   check(uc_mem_map(engine_, kFlash, kFlashSize, UC_PROT_ALL));
@@ -68,21 +68,32 @@ Stm32F405::Stm32F405(const std::vector<std::string>& images) {
   const std::vector<std::uint8_t> erased(kFlashSize, 0xFF);
   check(uc_mem_write(engine_, kFlash, erased.data(), erased.size()));
   check(uc_mem_write(engine_, kUniqueId, kSerial, sizeof kSerial));
-  for (const auto& image : images) load_elf(image);
-  hook_time();
+  const auto at_write =
+      +[](uc_engine*, uc_mem_type, std::uint64_t address, int, std::int64_t value, void* context) {
+        auto* self = static_cast<Stm32F405*>(context);
+        if (self->on_flash_write)
+          self->on_flash_write(static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(value));
+      };
+  uc_hook hook;
+  check(uc_hook_add(engine_, &hook, UC_HOOK_MEM_WRITE, reinterpret_cast<void*>(at_write), this, kFlash,
+                    kFlash + kFlashSize - 1));
 }
 
 Stm32F405::~Stm32F405() {
   uc_close(engine_);
 }
 
-void Stm32F405::load_elf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+void Stm32F405::load_bytes(const std::vector<std::uint8_t>& bytes, std::uint32_t address) {
+  check(uc_mem_write(engine_, address, bytes.data(), bytes.size()));
+}
+
+void Stm32F405::load_program(const std::string& elf, bool into_flash) {
+  std::ifstream file(elf, std::ios::binary);
   const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
-  if (bytes.size() < sizeof(Elf32_Ehdr)) throw std::runtime_error(path + ": not an ELF file");
+  if (bytes.size() < sizeof(Elf32_Ehdr)) throw std::runtime_error(elf + ": not an ELF file");
   const auto* header = reinterpret_cast<const Elf32_Ehdr*>(bytes.data());
   const auto* segments = reinterpret_cast<const Elf32_Phdr*>(bytes.data() + header->e_phoff);
-  for (unsigned i = 0; i < header->e_phnum; ++i)
+  for (unsigned i = 0; i < header->e_phnum && into_flash; ++i)
     if (segments[i].p_type == PT_LOAD && segments[i].p_filesz > 0)
       check(uc_mem_write(engine_, segments[i].p_paddr, bytes.data() + segments[i].p_offset,
                          segments[i].p_filesz));
@@ -91,33 +102,36 @@ void Stm32F405::load_elf(const std::string& path) {
     if (sections[i].sh_type != SHT_SYMTAB) continue;
     const auto* symbols = reinterpret_cast<const Elf32_Sym*>(bytes.data() + sections[i].sh_offset);
     const char* names = bytes.data() + sections[sections[i].sh_link].sh_offset;
-    for (unsigned k = 0; k < sections[i].sh_size / sizeof(Elf32_Sym); ++k)
-      symbols_[names + symbols[k].st_name] = symbols[k].st_value;
+    for (unsigned k = 0; k < sections[i].sh_size / sizeof(Elf32_Sym); ++k) {
+      symbols_.insert(names + symbols[k].st_name);
+      hook(names + symbols[k].st_name, symbols[k].st_value & ~1u);
+    }
   }
 }
 
 // A hook on one instruction costs nothing elsewhere, and to stop there is exact; Unicorn's stop within an access of a register
 // would run part of its block again.
-void Stm32F405::hook_time() {
+void Stm32F405::hook(const std::string& name, std::uint32_t address) {
   const auto at_ticks = +[](uc_engine* engine, std::uint64_t, std::uint32_t, void* context) {
     auto* self = static_cast<Stm32F405*>(context);
     if (self->pending() >= 0 || self->reset_wanted || self->cycles_ >= self->until_ ||
         (self->finished_ = self->done_()))
       uc_emu_stop(engine);
   };
-  const auto at_write =
-      +[](uc_engine*, uc_mem_type, std::uint64_t address, int, std::int64_t value, void* context) {
-        auto* self = static_cast<Stm32F405*>(context);
-        if (self->on_flash_write)
-          self->on_flash_write(static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(value));
-      };
-  uc_hook hook;
-  for (const auto& [name, address] : symbols_)
-    if (name == "hal_ticks")
-      check(uc_hook_add(engine_, &hook, UC_HOOK_CODE, reinterpret_cast<void*>(at_ticks), this, address & ~1u,
-                        address & ~1u));
-  check(uc_hook_add(engine_, &hook, UC_HOOK_MEM_WRITE, reinterpret_cast<void*>(at_write), this, kFlash,
-                    kFlash + kFlashSize - 1));
+  // A loop that waits for the watchdog: a millisecond a turn.
+  const auto at_hang = +[](uc_engine* engine, std::uint64_t, std::uint32_t, void* context) {
+    auto* self = static_cast<Stm32F405*>(context);
+    self->stall(1e-3);
+    self->access();
+    if (self->reset_wanted || self->cycles_ >= self->until_) uc_emu_stop(engine);
+  };
+  uc_hook added;
+  if (name == "hal_ticks")
+    check(uc_hook_add(engine_, &added, UC_HOOK_CODE, reinterpret_cast<void*>(at_ticks), this, address,
+                      address));
+  if (name == "hang")
+    check(
+        uc_hook_add(engine_, &added, UC_HOOK_CODE, reinterpret_cast<void*>(at_hang), this, address, address));
 }
 
 void Stm32F405::add(std::uint32_t base, std::uint32_t size, Peripheral& peripheral, int interrupt) {
@@ -199,8 +213,7 @@ void Stm32F405::take(int interrupt) {
   check(uc_context_alloc(engine_, &context));
   check(uc_context_save(engine_, context));
   const std::uint32_t vectors = system_.contains(kVectors) ? system_[kVectors] : kFlash;
-  // Room as the core's own frame takes it, with the floating point registers.
-  set(UC_ARM_REG_SP, (reg(UC_ARM_REG_SP) - 0x68u) & ~7u);
+  set(UC_ARM_REG_SP, load(vectors) - 16u);  // the main stack, but for what the start left there
   set(UC_ARM_REG_LR, kReturn | 1u);
   emulate(load(vectors + 4u * (16u + static_cast<unsigned>(interrupt))), kReturn);
   check(uc_context_restore(engine_, context));

@@ -15,6 +15,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,11 +55,14 @@ class Stm32F405 {
   static constexpr std::uint32_t kFlash = 0x08000000, kFlashSize = 0x100000;
   static constexpr std::uint32_t kSerial[3] = {0x00340021, 0x30385119, 0x36323734};
 
-  // Loads what each ELF file has for the flash. All are of the same program's family: symbols are taken from every one.
-  explicit Stm32F405(const std::vector<std::string>& images);
+  Stm32F405();
   ~Stm32F405();
   Stm32F405(const Stm32F405&) = delete;
   Stm32F405& operator=(const Stm32F405&) = delete;
+
+  // A program: what the ELF file has for the flash, and the names in it; or its names alone, where it comes to flash otherwise.
+  void load_program(const std::string& elf, bool into_flash = true);
+  void load_bytes(const std::vector<std::uint8_t>& bytes, std::uint32_t address);
 
   // Adds registers at an address, with the number of their interrupt (negative: none).
   void add(std::uint32_t base, std::uint32_t size, Peripheral& peripheral, int interrupt = -1);
@@ -73,12 +77,16 @@ class Stm32F405 {
   }
 
   [[nodiscard]] std::uint64_t cycles() const { return cycles_; }
+  // The power fails here and now, and comes back: for what the flash is doing.
+  void cut_power() {
+    reset_wanted = true;
+    uc_emu_stop(engine_);
+  }
   // The core stands still for so long, as during an erase.
   void stall(double seconds) { cycles_ += static_cast<std::uint64_t>(seconds * kHz); }
 
   std::uint32_t load(std::uint32_t address, unsigned size = 4) const;
   void store(std::uint32_t address, std::uint32_t value, unsigned size = 4);
-  [[nodiscard]] std::uint32_t symbol(const std::string& name) const { return symbols_.at(name); }
 
   [[nodiscard]] bool has_symbol(const std::string& name) const { return symbols_.contains(name); }
 
@@ -100,8 +108,7 @@ class Stm32F405 {
     int interrupt;
   };
 
-  void load_elf(const std::string& path);
-  void hook_time();
+  void hook(const std::string& name, std::uint32_t address);
   std::uint32_t bus_read(std::uint32_t address);
   void bus_write(std::uint32_t address, unsigned size, std::uint32_t value);
   std::uint32_t system_read(std::uint32_t address);
@@ -115,7 +122,7 @@ class Stm32F405 {
 
   uc_engine* engine_ = nullptr;
   std::vector<Mapped> mapped_;
-  std::map<std::string, std::uint32_t> symbols_;
+  std::set<std::string> symbols_;
   std::uint64_t cycles_ = 0;
   std::uint32_t enabled_[3] = {};
   std::uint8_t priority_[96] = {};

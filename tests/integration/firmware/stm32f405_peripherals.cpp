@@ -55,13 +55,16 @@ std::uint32_t Stm32F405Flash::sector_start(unsigned sector) {
 
 void Stm32F405Flash::program(std::uint32_t address, std::uint32_t word) {
   finish_program();
-  ++operations;
+  const bool cut = ++operations == cut_at;
   if ((control_ >> 31) != 0 || (control_ & 1u) == 0 || (control_ >> 8 & 3u) != 2 || address % 4 != 0)
     chip_.misuse("flash: a write that was not prepared");
   address_ = address;
   word_ = chip_.load(address) & word;
   if (word_ != word) chip_.misuse("flash: a word was programmed twice");
   written_ = true;
+  if (!cut) return;
+  word_ |= 0x0FF00FF0u & chip_.load(address);  // half of its bits had no time
+  chip_.cut_power();
 }
 
 void Stm32F405Flash::finish_program() {
@@ -89,9 +92,12 @@ void Stm32F405Flash::write(std::uint32_t offset, std::uint32_t value) {
   if ((value & 2u) == 0 || (value >> 16 & 1u) == 0) return;
   const unsigned sector = value >> 3 & 15u;
   if (sector == 0 || sector > 11) chip_.misuse("flash: erase of the boot program");
-  ++operations;
-  for (std::uint32_t at = sector_start(sector); at < sector_start(sector + 1); at += 4)
+  const bool cut = ++operations == cut_at;
+  const std::uint32_t end = sector_start(sector + 1);
+  for (std::uint32_t at = sector_start(sector) + (cut ? (end - sector_start(sector)) / 2 : 0); at < end;
+       at += 4)
     chip_.store(at, 0xFFFFFFFFu);
+  if (cut) return chip_.cut_power();
   chip_.stall(sector < 4 ? 0.25 : sector == 4 ? 0.55 : 1.0);  // DS8626, table 40, words
 }
 

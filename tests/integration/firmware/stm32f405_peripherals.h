@@ -53,7 +53,8 @@ class Stm32F405Flash : public Peripheral {
 
   static std::uint32_t sector_start(unsigned sector);
 
-  std::uint64_t operations = 0;
+  std::uint64_t operations = 0;              // words programmed and sectors erased
+  std::uint64_t cut_at = ~std::uint64_t{0};  // the power fails within that one
 
  private:
   void program(std::uint32_t address, std::uint32_t word);

@@ -17,6 +17,7 @@
 
 #include "daemon/clock.h"
 #include "firmware/core/board.h"
+#include "firmware/core/board_requests.h"
 #include "tests/support/child_process.h"
 #include "tests/support/fake_flash.h"
 #include "tests/support/temporary_folder.h"
@@ -115,6 +116,7 @@ class Board {
   [[nodiscard]] bool unplugged() const { return gone_after > 0 && written >= gone_after; }
   void turn() {
     board_poll(&board_, counter());
+    board_finish_update(&board_);
     for (std::uint8_t byte = 0; outbox_take(&board_.out, &byte);) to_host_.push_back(byte);
   }
 

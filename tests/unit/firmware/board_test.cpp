@@ -11,6 +11,7 @@
 #include <numbers>
 #include <vector>
 
+#include "firmware/core/board_requests.h"
 #include "firmware/core/settings.h"
 #include "tests/support/fake_flash.h"
 
@@ -43,6 +44,7 @@ class World {
   }
   void send_bytes(const std::vector<std::uint8_t>& bytes) {
     for (const std::uint8_t byte : bytes) board_byte(self.get(), link, byte, counter);
+    board_finish_update(self.get());
   }
   void send(std::uint8_t type) {
     sync_message message{};

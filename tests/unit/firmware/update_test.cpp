@@ -72,7 +72,9 @@ class Board {
     sync_update_finish finish{};
     sign(bytes, version, region, finish.signature);
     if (forged) finish.signature[17] ^= 1;
-    return update_finish(&self, &finish);
+    if (const auto fault = update_finish(&self, &finish)) return fault;
+    EXPECT_TRUE(self.unverified);
+    return update_verify(&self);
   }
 
   std::uint32_t boot() {
