@@ -23,8 +23,8 @@ extern "C" {
 
 enum { UPDATE_TRAILER = 128 };
 
-// Whether a region's first size bytes were signed by us for that region (a: region is FLASH_IMAGE_A). signed_bytes and
-// their order: image, then version (3 bytes), slot (1 byte, 0 or 1), size (u32).
+// Whether a region's first size bytes were signed by us for that region. The signed bytes and their order: image, then version
+// (3 bytes), slot (1 byte, 0 or 1), size (u32).
 typedef struct {
   void* context;
   bool (*verify)(void* context, uint32_t region, uint32_t size, const uint8_t version[3],
