@@ -75,7 +75,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(V4l2Loopback, CaptureContract, LoopbackSubject);
 struct LibcameraSubject {
   std::string id;
   std::string missing() {
-    const auto cameras = list_libcamera();
+    static const auto cameras = list_libcamera();  // once: to look takes an emulated machine a second
     if (cameras.empty()) return "libcamera sees no camera: run in the virtual machine";
     id = cameras.front().id;
     return {};

@@ -29,7 +29,7 @@ using testing::HasSubstr;
 class LibcameraOnVimc : public testing::Test {
  protected:
   void SetUp() override {
-    const auto cameras = list_libcamera();
+    static const auto cameras = list_libcamera();  // once: to look takes an emulated machine a second
     if (cameras.empty())
       GTEST_SKIP() << "libcamera sees no camera: run in the virtual machine, in a build with libcamera";
     camera_ = cameras.front();
