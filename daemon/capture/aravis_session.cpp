@@ -35,7 +35,6 @@ constexpr auto kAsk = 1s;              // exposure, gain, temperature, PTP
 struct AravisSession::Handles {
   // An ArvBuffer knows its own by its user data.
   struct Buffer {
-    Handles* owner = nullptr;
     std::size_t index = 0;
     ArvBuffer* filled = nullptr;  // while it is ours: taken from the stream and not given back
     std::int64_t received_mono_ns = 0;
@@ -47,7 +46,7 @@ struct AravisSession::Handles {
   ArvPixelFormat pixel_format = 0;
   std::unique_ptr<BufferPool> pool;
   std::vector<Buffer> buffers;
-  std::atomic<int> live_buffers{0};  // ArvBuffers that exist
+  std::atomic<int> out{0};  // frames handed on that have not come back
   AravisChunks chunks;
   DeviceClock device_clock;
   PtpClock ptp_clock;
@@ -88,9 +87,6 @@ struct AravisSession::Handles {
     const std::lock_guard lock(self->mutex);
     self->lost = true;
     self->news.notify_one();
-  }
-  static void on_buffer_freed(void* record) noexcept {
-    static_cast<Buffer*>(record)->owner->live_buffers.fetch_sub(1);
   }
 
   // False: it does not answer.
@@ -154,6 +150,7 @@ std::optional<CaptureFault> AravisSession::open() {
   h.values = read_values(h.camera.get());
   if (!h.values) return CaptureFault{SourceState::opening, "does not tell its exposure and gain"};
   refresh();
+  has_exposure_ = settings_.exposure_us > 0;
   return std::nullopt;
 }
 
@@ -186,10 +183,9 @@ std::optional<CaptureFault> AravisSession::start() {
                    static_cast<guint>(std::clamp(2e6 / settings_.rate_hz, 30e3, 200e3)), nullptr);
   }
   for (std::size_t i = 0; i < h.pool->count(); ++i) {
-    h.buffers[i] = {&h, i};
-    h.live_buffers.fetch_add(1);
-    arv_stream_push_buffer(stream, arv_buffer_new_full(payload, h.pool->buffer(i).data(), &h.buffers[i],
-                                                       Handles::on_buffer_freed));
+    h.buffers[i].index = i;
+    arv_stream_push_buffer(stream,
+                           arv_buffer_new_full(payload, h.pool->buffer(i).data(), &h.buffers[i], nullptr));
   }
   arv_camera_start_acquisition(camera, error.out());
   if (error) return fault(std::string("does not start: ") + error.text());
@@ -210,6 +206,7 @@ CaptureSession::Event AravisSession::next(std::chrono::milliseconds timeout, Ses
     buffer = h.filled.front();
     h.filled.erase(h.filled.begin());
   }
+  ++h.out;
   frame = {};
   const Event event = describe(buffer, frame);
   if (frame.outcome != SessionFrame::Outcome::complete) give_back(buffer);
@@ -287,11 +284,14 @@ Status AravisSession::set_exposure_us(double exposure_us) {
 
 void AravisSession::give_back(std::size_t buffer) noexcept {
   Handles& h = *handles_;
-  const std::lock_guard lock(h.mutex);
-  if (h.closed)
-    g_object_unref(std::exchange(h.buffers[buffer].filled, nullptr));
-  else
-    h.returned.push_back(buffer);
+  {
+    const std::lock_guard lock(h.mutex);
+    if (h.closed)
+      g_object_unref(std::exchange(h.buffers[buffer].filled, nullptr));
+    else
+      h.returned.push_back(buffer);
+  }
+  --h.out;  // the last that is done here: nothing of the session need be there after it
 }
 
 void AravisSession::wake() noexcept {
@@ -322,7 +322,7 @@ void AravisSession::close() noexcept {
 }
 
 bool AravisSession::all_returned() const noexcept {
-  return handles_->live_buffers.load() == 0;
+  return handles_->out.load() == 0;
 }
 
 }  // namespace lightwell

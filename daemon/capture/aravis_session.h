@@ -29,7 +29,7 @@ class AravisSession final : public CaptureSession {
   Event next(std::chrono::milliseconds timeout, SessionFrame& frame) noexcept override;  // allocates nothing
   [[nodiscard]] CaptureFault fault() const override;
   std::string refresh() override;
-  [[nodiscard]] bool sets_exposure() const override { return settings_.exposure_us > 0; }
+  [[nodiscard]] bool sets_exposure() const override { return has_exposure_; }
   Status set_exposure_us(double exposure_us) override;
   [[nodiscard]] const SessionSettings& settings() const override { return settings_; }
   void give_back(std::size_t buffer) noexcept override;
@@ -44,6 +44,7 @@ class AravisSession final : public CaptureSession {
   const std::string address_;
   const CaptureOptions options_;
   SessionSettings settings_;
+  bool has_exposure_ = false;  // from open on
   double gain_db_ = 0;
   float temperature_c_ = 0;
   std::unique_ptr<Handles> handles_;

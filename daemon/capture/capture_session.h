@@ -76,7 +76,7 @@ class CaptureSession {
   virtual std::string refresh() = 0;
   [[nodiscard]] virtual const SessionSettings& settings() const = 0;
 
-  // Whether set_exposure_us can succeed.
+  // Whether set_exposure_us can succeed; from open on, for any thread.
   [[nodiscard]] virtual bool sets_exposure() const { return false; }
   // Another exposure while frames come; settings have what was granted. Frames that were under way may still have the
   // old one. failed: refused by the device, which names its range.
