@@ -16,7 +16,7 @@ namespace {
 constexpr std::int64_t kPingNs =
     25'000'000;  // BoardClockMap: a few µs with a millisecond of scheduling noise
 constexpr std::int64_t kStateNs = 500'000'000;     // LED
-constexpr std::int64_t kHelloNs = 500'000'000;     // until it is answered
+constexpr std::int64_t kHelloNs = 500'000'000;     // until a question is answered
 constexpr std::int64_t kSilentNs = 1'000'000'000;  // 40 pings unanswered
 // While the clocks may be further apart than that, a frame is better stamped by its camera.
 constexpr double kGoodEnoughUs = 2000;
@@ -92,9 +92,9 @@ Status SyncBoard::converse(SyncLink& link) {
   clock_.reset();
   last_sequence_.reset();
   to_configure_.reset();
-  asked_ = false;
+  told_ = false;
   last_board_ns_ = 0;
-  next_hello_ns_ = next_ping_ns_ = next_state_ns_ = 0;
+  next_hello_ns_ = next_question_ns_ = next_ping_ns_ = next_state_ns_ = 0;
   last_heard_ns_ = mono_now_ns();
   std::array<std::uint8_t, 1024> bytes{};
   while (!stopping_) {
@@ -146,8 +146,10 @@ Status SyncBoard::send_due(SyncLink& link) {
   }
   if (!agreed_) return {};
   if (Status sent = take_next_trigger(link); !sent) return sent;
-  if (!std::exchange(asked_, true))
+  if (!told_ && now_ns >= next_question_ns_) {
+    next_question_ns_ = now_ns + kHelloNs;
     if (Status sent = send(link, message_of(SYNC_CONFIGURATION_REQUEST)); !sent) return sent;
+  }
   if (now_ns >= next_state_ns_) {
     next_state_ns_ = now_ns + kStateNs;
     sync_message message = message_of(SYNC_HOST_STATE);
@@ -213,8 +215,8 @@ Status SyncBoard::take_next_trigger(SyncLink& link) {
 
 // The board has started again: it may be another firmware, and has forgotten what it was told.
 void SyncBoard::begin_anew() {
-  agreed_ = asked_ = false;
-  next_hello_ns_ = 0;
+  agreed_ = told_ = false;
+  next_hello_ns_ = next_question_ns_ = 0;
   clock_.reset();
   last_sequence_.reset();
   const std::scoped_lock lock(mutex_);
@@ -258,6 +260,7 @@ void SyncBoard::take(const sync_message& message, std::int64_t received_mono_ns)
     clock_.add({static_cast<std::int64_t>(message.pong.t_host_ns),
                 static_cast<std::int64_t>(message.pong.t_received_board_ns),
                 static_cast<std::int64_t>(message.pong.t_sent_board_ns), received_mono_ns});
+  if (message.type == SYNC_CONFIGURATION) told_ = true;
   if (message.type == SYNC_STROBE) take_strobe(message.strobe);
   if (message.type == SYNC_TIMECODE) take_timecode(message.timecode);
   if (message.type == SYNC_BUTTON && options_.on_button)

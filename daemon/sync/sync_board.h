@@ -83,12 +83,12 @@ class SyncBoard {
   frame_receiver receiver_{};
   std::uint16_t sequence_ = 0;
   std::optional<std::uint16_t> last_sequence_;
-  std::int64_t next_ping_ns_ = 0, next_state_ns_ = 0, next_hello_ns_ = 0;
+  std::int64_t next_ping_ns_ = 0, next_state_ns_ = 0, next_hello_ns_ = 0, next_question_ns_ = 0;
   std::int64_t last_heard_ns_ = 0;
   std::uint64_t last_board_ns_ = 0;
   bool connected_before_ = false;
   bool agreed_ = false;  // HELLO with our schema
-  bool asked_ = false;   // for its configuration
+  bool told_ = false;    // its configuration
   std::optional<sync_configuration> to_configure_;
 
   std::optional<BoardOptions::Trigger> trigger_;  // the latest wanted

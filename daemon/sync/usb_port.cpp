@@ -116,6 +116,7 @@ Result<std::unique_ptr<SyncLink>> UsbPort::open_device(libusb_device* device,
 
 Result<std::unique_ptr<SyncLink>> UsbPort::open() {
   waited_ = milliseconds(0);
+  arrived_ = 0;  // what has come so far is listed below
   perhaps_ = true;
   if (Status started = start(); !started) return started.error();
   libusb_device** devices = nullptr;

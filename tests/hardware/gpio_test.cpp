@@ -33,12 +33,14 @@ using std::chrono::milliseconds;
 using testing::HasSubstr;
 
 constexpr int kTrigger = 3, kStrobe = 5;
+// The kernel asks which way an edge went after it has stamped it: what is shorter than its thread sleeps goes untold.
+constexpr auto kExposure = milliseconds(15);
 
-// Exposes for 4 ms whenever its trigger line rises; remembers between which times each exposure began.
+// Exposes whenever its trigger line rises; remembers between which times each exposure began, and when it was over.
 class Camera {
  public:
   struct Exposure {
-    std::int64_t begin_after_ns = 0, begin_before_ns = 0;
+    std::int64_t begin_after_ns = 0, begin_before_ns = 0, end_before_ns = 0;
   };
   explicit Camera(const GpioSimulator& chip) : chip_(chip), thread_([this] { run(); }) {}
   ~Camera() {
@@ -66,10 +68,11 @@ class Camera {
     exposure.begin_after_ns = mono_now_ns();
     chip_.pull(kStrobe, true);
     exposure.begin_before_ns = mono_now_ns();
-    std::this_thread::sleep_for(milliseconds(4));
+    std::this_thread::sleep_for(kExposure);
+    chip_.pull(kStrobe, false);
+    exposure.end_before_ns = mono_now_ns();
     const std::scoped_lock lock(mutex_);
     exposures_.push_back(exposure);
-    chip_.pull(kStrobe, false);
   }
 
   const GpioSimulator& chip_;
@@ -109,16 +112,16 @@ TEST_F(GpioLines, EdgesOfTheStrobeComeWithTheKernelsStampsAndAnswerTheirTriggers
   int compared = 0;
   std::optional<std::uint32_t> last;
   for (const Camera::Exposure& exposure : exposures) {
-    const auto strobe = strobes_.newest_before(exposure.begin_before_ns + 30'000'000);
-    if (!strobe) continue;
+    const auto strobe = strobes_.newest_before(exposure.end_before_ns);
+    if (!strobe || strobe->begin_mono_ns < exposure.begin_after_ns) continue;  // its own is not told
     ++compared;
-    EXPECT_GE(strobe->begin_mono_ns, exposure.begin_after_ns) << "stamped when it rose, not when it was read";
-    EXPECT_LE(strobe->begin_mono_ns, exposure.begin_before_ns);
-    EXPECT_GE(strobe->end_mono_ns - strobe->begin_mono_ns, 4'000'000);
+    EXPECT_LE(strobe->begin_mono_ns, exposure.begin_before_ns)
+        << "stamped when it rose, not when it was read";
+    EXPECT_GE(strobe->end_mono_ns - strobe->begin_mono_ns, std::chrono::nanoseconds(kExposure).count());
     EXPECT_TRUE(!last || strobe->trigger > *last);
     last = strobe->trigger;
   }
-  EXPECT_GE(compared, 25);
+  EXPECT_GE(compared, 20);
 }
 
 TEST_F(GpioLines, TheTriggersRateIsTheOneThatWasAskedFor) {
@@ -136,9 +139,10 @@ TEST_F(GpioLines, TheTriggersRateIsTheOneThatWasAskedFor) {
     was_high = high;
   }
   const std::uint32_t told = made() - before;
-  EXPECT_NEAR(told, 100, 5) << "25 a second for 4 s";
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  EXPECT_NEAR(told, 25 * took.count(), 5);
   // A machine that is held up for half a period leaves pulses out, and a sampler may sleep through some.
-  EXPECT_LE(rises, 101);
+  EXPECT_LE(rises, 25 * took.count() + 1);
   EXPECT_GE(rises, 60);
 }
 
@@ -148,12 +152,13 @@ TEST_F(GpioLines, FramesOfACameraThatRunsByItselfAreStampedWithItsStrobe) {
   ASSERT_TRUE(eventually([&] { return sync.view().state == BoardState::connected; }))
       << sync.view().description;
   ExposureStamper stamper(strobes_);
+  // Sixteen frames teach the stamper, and again where a strobe went untold.
   std::uint64_t stamped = 0;
-  for (std::uint64_t sequence = 100; sequence < 140; ++sequence) {
+  for (std::uint64_t sequence = 100; stamped < 10 && sequence < 400; ++sequence) {
     const std::int64_t begin_after_ns = mono_now_ns();
     chip.pull(kStrobe, true);
     const std::int64_t begin_before_ns = mono_now_ns();
-    std::this_thread::sleep_for(milliseconds(4));
+    std::this_thread::sleep_for(kExposure);
     const std::int64_t end_after_ns = mono_now_ns();
     chip.pull(kStrobe, false);
     const std::int64_t end_before_ns = mono_now_ns();
@@ -166,7 +171,7 @@ TEST_F(GpioLines, FramesOfACameraThatRunsByItselfAreStampedWithItsStrobe) {
     EXPECT_GE(2 * info.capture_mono_ns, begin_after_ns + end_after_ns - 1);
     EXPECT_LE(2 * info.capture_mono_ns, begin_before_ns + end_before_ns + 1);
   }
-  EXPECT_GT(stamped, 15U);
+  EXPECT_EQ(stamped, 10U);
 }
 
 TEST_F(GpioLines, WhatIsNotToBeHadIsNamed) {
