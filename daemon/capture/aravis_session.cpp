@@ -169,6 +169,7 @@ std::optional<CaptureFault> AravisSession::start() {
     return fault("sends frames of " + std::to_string(payload) + " bytes: no memory for " +
                  std::to_string(options_.buffers));
   h.buffers.resize(h.pool->count());
+  for (std::size_t i = 0; i < h.buffers.size(); ++i) h.buffers[i].index = i;
   h.filled.reserve(h.pool->count());
   h.returned.reserve(h.pool->count());
   ArvStream* stream = arv_camera_create_stream(camera, Handles::on_stream, &h, error.out());
@@ -182,11 +183,9 @@ std::optional<CaptureFault> AravisSession::start() {
       g_object_set(stream, "frame-retention",
                    static_cast<guint>(std::clamp(2e6 / settings_.rate_hz, 30e3, 200e3)), nullptr);
   }
-  for (std::size_t i = 0; i < h.pool->count(); ++i) {
-    h.buffers[i].index = i;
-    arv_stream_push_buffer(stream,
-                           arv_buffer_new_full(payload, h.pool->buffer(i).data(), &h.buffers[i], nullptr));
-  }
+  for (Handles::Buffer& buffer : h.buffers)
+    arv_stream_push_buffer(
+        stream, arv_buffer_new_full(payload, h.pool->buffer(buffer.index).data(), &buffer, nullptr));
   arv_camera_start_acquisition(camera, error.out());
   if (error) return fault(std::string("does not start: ") + error.text());
   h.asking = std::thread(&Handles::ask, &h);

@@ -259,8 +259,9 @@ void WatchedSource::watch(CaptureSession& session) {
     }
     if (flowing) silent_sessions_ = 0;
     if (!settings.free_running && !has_frame) {
-      report(SourceState::stalled, what_ + " has sent no frame yet: it is " +
-                                       (settings.trigger.empty() ? "triggered" : settings.trigger));
+      if (silence >= limit)
+        report(SourceState::stalled, what_ + " has sent no frame yet: it is " +
+                                         (settings.trigger.empty() ? "triggered" : settings.trigger));
       continue;
     }
     if (flowing || !settings.free_running) {
