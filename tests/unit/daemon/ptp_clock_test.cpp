@@ -52,7 +52,8 @@ TEST(PtpClock, ClockThatStepsIsNoticed) {
     const std::int64_t utc = kUtc + i * 10 * kMs;
     clock.saw(static_cast<std::uint64_t>(utc + kLeap - 20'000 * kMs), utc + kLeap, utc);
   }
-  EXPECT_EQ(clock.words("Slave", true), "PTP Slave, 17 s ahead of this machine's clock") << "nearer to UTC now";
+  EXPECT_EQ(clock.words("Slave", true), "PTP Slave, 17 s ahead of this machine's clock")
+      << "nearer to UTC now";
 }
 
 }  // namespace
