@@ -119,6 +119,13 @@ void GpioSync::publish(const GpioTrigger* trigger, const StrobePairing& pairing)
   if (view_.state != BoardState::connected && std::exchange(worked_before_, true)) ++view_.reconnects;
   view_.state = BoardState::connected;
   view_.description = description(made.real_time);
+  if (trigger != nullptr && !view_.configuration) {
+    sync_configuration& c = view_.configuration.emplace();
+    c.trigger_on = 1;
+    c.rate_numerator = options_.pulses.rate_numerator;
+    c.rate_denominator = options_.pulses.rate_denominator;
+    c.pulse_ns = options_.pulses.pulse_ns;
+  }
   view_.status = status;
 }
 

@@ -27,8 +27,15 @@ const char* lock_name(std::uint8_t lock) {
   }
 }
 
-Json trigger_of(const sync_status& s) {
-  return {{"lock", lock_name(s.lock)},
+// Null where nothing is triggered, or how often has not been said.
+Json rate_of(const std::optional<sync_configuration>& c) {
+  if (!c || c->trigger_on == 0 || c->rate_denominator == 0) return nullptr;
+  return static_cast<double>(c->rate_numerator) / c->rate_denominator;
+}
+
+Json trigger_of(const sync_status& s, const std::optional<sync_configuration>& configuration) {
+  return {{"rate_hz", rate_of(configuration)},
+          {"lock", lock_name(s.lock)},
           {"phase_error_ns", s.phase_error_ns},
           {"phase_rms_ns", s.phase_rms_ns},
           {"frequency_ppb", s.frequency_ppb},
@@ -93,7 +100,7 @@ Json board_json(const BoardView& board) {
           {"drift_ppm", board.drift_ppm},
           {"stamped_frames", board.stamped},
           {"unstamped_frames", board.left},
-          {"trigger", board.status ? trigger_of(*board.status) : Json(nullptr)},
+          {"trigger", board.status ? trigger_of(*board.status, board.configuration) : Json(nullptr)},
           {"flicker", board.photodiode ? flicker_of(*board.photodiode) : Json(nullptr)},
           {"up_m_s2", board.imu ? up_of(*board.imu) : Json(nullptr)},
           {"temperature_c", temperature_of(board.temperature[SYNC_SENSOR_BOARD])},

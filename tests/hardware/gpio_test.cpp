@@ -252,6 +252,7 @@ TEST_F(GpioLines, TheDaemonTriggersAndSaysWhatABoxWithoutABoardLacks) {
   EXPECT_THAT(board["description"], HasSubstr("strobes on line 5"));
   EXPECT_TRUE(board["flicker"].is_null() && board["up_m_s2"].is_null() && board["temperature_c"].is_null());
   EXPECT_EQ(board["trigger"]["lock"], "free");
+  EXPECT_EQ(board["trigger"]["rate_hz"], 10);
 }
 
 }  // namespace

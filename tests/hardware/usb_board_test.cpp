@@ -79,6 +79,7 @@ TEST_F(DaemonAndUsbBoard, WhatTheBoardSaysIsInTheStatusAndOnThePage) {
   EXPECT_NEAR(b["flicker"]["lamps"][0]["frequency_hz"].get<double>(), 100, 0.3);
   EXPECT_NEAR(b["flicker"]["lamps"][0]["depth"].get<double>(), 0.3, 0.03);
   EXPECT_NEAR(b["flicker"]["level_lx"].get<double>(), 800, 40);
+  EXPECT_DOUBLE_EQ(b["trigger"]["rate_hz"].get<double>(), 25);
   const json up = b["up_m_s2"];
   EXPECT_NEAR(std::atan2(up[1].get<double>(), up[2].get<double>()) * 180 / std::acos(-1.0), 20, 1);
   EXPECT_EQ(b["refused"], "");

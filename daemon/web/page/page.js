@@ -168,7 +168,10 @@ function showBoard(board) {
   $('board-fact').hidden = !board || board.state === 'off';
   if (!board || board.state === 'off') return;
   const parts = [board.state === 'connected' ? 'connected' : `${board.state}: ${board.description}`];
-  if (board.trigger && board.trigger.lock !== 'free') parts.push(`triggers ${board.trigger.lock}`);
+  if (board.trigger && board.trigger.rate_hz !== null) {
+    const lock = board.trigger.lock === 'free' ? '' : `, ${board.trigger.lock}`;
+    parts.push(`triggers ${number(board.trigger.rate_hz, 5)} Hz${lock}`);
+  }
   if (board.timecode) parts.push(board.timecode);
   const lamp = board.flicker && board.flicker.lamps[0];
   if (lamp) parts.push(`flicker ${number(lamp.frequency_hz, 1)} Hz, ${number(100 * lamp.depth, 1)} %`);
