@@ -5,14 +5,17 @@
 //   in:  u8 kind, u8 index, u16 0, u32 value, little-endian
 //        'E' edge: index a board_input, value its stamp    'S' sample: value its code
 //        'I' inertial: index 0 to 5, value a float's bits (three of acceleration, three of rate; the sixth ends a sample)
+//        'C', 'H' timecode's cells: value the stamp of the next half cell's start; the length of one, ticks × 2^16
+//        'L' of the next index half cells (32 at most), value tells from its lowest bit which begin with an edge
 //        'T' temperature: index the sensor, value m°C      'B' button: value its level
 //   out: 'P', u8 0, u16 0, u32 stamp of a pulse's rise, by the clock that board time counts
 
 #include "firmware/hal/hal.h"
 
+#include "firmware/port/mps2/memory.h"
 #include "firmware/port/mps2/registers.h"
 
-enum { kClockHz = 25000000, kRing = 256, kRecord = 8, kEdges = 32, kSoonTicks = 50 };
+enum { kClockHz = 25000000, kRing = 256, kRecord = 8, kEdges = 64, kCells = 32, kSoonTicks = 50 };
 static const uint32_t kTimer32 = 1u << 1, kTimerInterrupt = 1u << 5, kTimerPeriodic = 1u << 6,
                       kTimerEnabled = 1u << 7;
 
@@ -41,6 +44,8 @@ static uint8_t sensor_index;
 static int32_t sensor_mc;
 static hal_edge_event edges[kEdges];
 static unsigned edges_head, edges_tail;
+static uint64_t cell_q16;  // stamp of the next half cell, × 2^16
+static uint32_t cell_length_q16;
 static uint8_t report[kRecord];
 static unsigned report_left;
 
@@ -48,10 +53,11 @@ static const board_facts kFacts = {.tick_hz = kClockHz,
                                    .capabilities = SYNC_CAN_TRIGGER | SYNC_CAN_STROBE | SYNC_CAN_REFERENCE |
                                                    SYNC_CAN_TIMECODE | SYNC_CAN_PHOTODIODE | SYNC_CAN_IMU |
                                                    SYNC_CAN_TEMPERATURE | SYNC_CAN_BUTTON |
-                                                   SYNC_CAN_CAMERA_POWER,
+                                                   SYNC_CAN_CAMERA_POWER | SYNC_CAN_STORE,
                                    .serial = {0x4D505332u, 386u, 0u},
                                    .sample_hz = 8000,
                                    .highest_code = 4095,
+                                   .memory = &ram_flash,
                                    .verifier = 0};
 
 void uart0_receive_interrupt(void);
@@ -177,6 +183,21 @@ void hal_link_write(uint8_t link, uint8_t byte) {
   LINK_UART->data = byte;
 }
 
+static void take_edge(board_input input, uint32_t stamp) {
+  if (edges_head - edges_tail == (unsigned)kEdges) {
+    ++lost;
+    return;
+  }
+  edges[edges_head++ % (unsigned)kEdges] = (hal_edge_event){input, stamp};
+}
+
+static void take_cells(unsigned count, uint32_t changes) {
+  for (unsigned i = 0; i < count && i < (unsigned)kCells; ++i) {
+    if ((changes >> i & 1u) != 0u) take_edge(BOARD_TIMECODE, (uint32_t)(cell_q16 >> 16));
+    cell_q16 += cell_length_q16;
+  }
+}
+
 static void take_record(void) {
   const uint32_t value =
       (uint32_t)record[4] | (uint32_t)record[5] << 8 | (uint32_t)record[6] << 16 | (uint32_t)record[7] << 24;
@@ -186,11 +207,16 @@ static void take_record(void) {
   } pun = {.bits = value};
   switch (record[0]) {
     case 'E':
-      if (edges_head - edges_tail == (unsigned)kEdges) {
-        ++lost;
-        break;
-      }
-      edges[edges_head++ % (unsigned)kEdges] = (hal_edge_event){(board_input)record[1], value};
+      take_edge((board_input)record[1], value);
+      break;
+    case 'C':
+      cell_q16 = (uint64_t)value << 16 | 0x8000u;  // rounded to the nearest tick
+      break;
+    case 'H':
+      cell_length_q16 = value;
+      break;
+    case 'L':
+      take_cells(record[1], value);
       break;
     case 'S':
       sample_code = (uint16_t)value;
@@ -214,7 +240,9 @@ static void take_record(void) {
 // The model's UART holds its sender back while a byte waits: nothing is lost by asking. What was taken must have been
 // fetched before the next record is.
 static void listen(void) {
-  while (!have_sample && !have_imu && !have_temperature && (STIMULUS_UART->state & 2u) != 0u) {
+  while (!have_sample && !have_imu && !have_temperature &&
+         edges_head - edges_tail <= (unsigned)kEdges - (unsigned)kCells &&
+         (STIMULUS_UART->state & 2u) != 0u) {
     record[record_size++] = (uint8_t)STIMULUS_UART->data;
     if (record_size == (unsigned)kRecord) {
       record_size = 0;

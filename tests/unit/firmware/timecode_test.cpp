@@ -3,68 +3,26 @@
 #include "firmware/core/timecode.h"
 
 #include <gtest/gtest.h>
-#include <ltc.h>
 
 #include <cmath>
 #include <random>
 #include <vector>
 
+#include "tests/support/ltc_signal.h"
+
 namespace {
 
+using lightwell::test::encode_ltc;
+using lightwell::test::LtcSignal;
+
 constexpr std::uint32_t kHz = 84'000'000;
-
-struct Signal {
-  std::vector<double> edges;   // seconds
-  std::vector<double> starts;  // of the frames, seconds
-  std::vector<SMPTETimecode> codes;
-};
-
-// Frames as libltc, an independent encoder, makes them, at 192 kHz; speed 1 is as it says.
-Signal encode(double fps, SMPTETimecode first, int frames, double speed = 1) {
-  constexpr double kRate = 192'000;
-  const bool drop = std::abs(fps - 30000.0 / 1001) < 1e-6;
-  LTCEncoder* encoder = ltc_encoder_create(kRate, fps,
-                                           fps == 25   ? LTC_TV_625_50
-                                           : fps == 24 ? LTC_TV_FILM_24
-                                                       : LTC_TV_525_60,
-                                           LTC_USE_DATE);
-  ltc_encoder_set_filter(encoder, 0);  // square
-  ltc_encoder_set_timecode(encoder, &first);
-  ltc_encoder_set_user_bits(encoder, 0x12345678);
-  if (drop) {
-    LTCFrame frame;
-    ltc_encoder_get_frame(encoder, &frame);
-    frame.dfbit = 1;
-    ltc_encoder_set_frame(encoder, &frame);
-  }
-  Signal signal;
-  std::vector<ltcsnd_sample_t> buffer(ltc_encoder_get_buffersize(encoder));
-  std::size_t at = 0;
-  int level = -1;
-  for (int i = 0; i < frames; ++i) {
-    SMPTETimecode code;
-    ltc_encoder_get_timecode(encoder, &code);
-    signal.codes.push_back(code);
-    signal.starts.push_back(static_cast<double>(at) / kRate / speed);
-    ltc_encoder_encode_frame(encoder);
-    const int count = ltc_encoder_copy_buffer(encoder, buffer.data());
-    for (int k = 0; k < count; ++k, ++at) {
-      const int now = buffer[static_cast<std::size_t>(k)] > 128;
-      if (now != level) signal.edges.push_back(static_cast<double>(at) / kRate / speed);
-      level = now;
-    }
-    ltc_encoder_inc_timecode(encoder);
-  }
-  ltc_encoder_free(encoder);
-  return signal;
-}
 
 struct Decoded {
   timecode_word word;
   double start;
 };
 
-std::vector<Decoded> decode(const Signal& signal, double jitter_s = 0, double lost = 0) {
+std::vector<Decoded> decode(const LtcSignal& signal, double jitter_s = 0, double lost = 0) {
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0, jitter_s);
   std::uniform_real_distribution<double> uniform;
@@ -92,7 +50,7 @@ SMPTETimecode at(unsigned char hours, unsigned char minutes, unsigned char secon
 TEST(Timecode, EveryFrameOfAnIndependentEncoderIsReadAndPlaced) {
   for (const double fps : {24.0, 25.0, 30000.0 / 1001, 30.0})
     for (const double speed : {0.5, 1.0, 1.9}) {
-      const Signal signal = encode(fps, at(23, 59, 58, 5), 90, speed);
+      const LtcSignal signal = encode_ltc(fps, at(23, 59, 58, 5), 90, speed);
       const auto words = decode(signal);
       // The first frame finds the bits, the second is the first whole word, the last one's end has no edge.
       ASSERT_EQ(words.size(), signal.codes.size() - 3) << fps << " " << speed;
@@ -106,19 +64,19 @@ TEST(Timecode, EveryFrameOfAnIndependentEncoderIsReadAndPlaced) {
 }
 
 TEST(Timecode, DropFrameIsSaid) {
-  const auto words = decode(encode(30000.0 / 1001, at(1, 0, 59, 20), 30));
+  const auto words = decode(encode_ltc(30000.0 / 1001, at(1, 0, 59, 20), 30));
   ASSERT_FALSE(words.empty());
   EXPECT_TRUE(words[0].word.drop_frame);
-  EXPECT_FALSE(decode(encode(25, at(1, 0, 0, 0), 10))[0].word.drop_frame);
+  EXPECT_FALSE(decode(encode_ltc(25, at(1, 0, 0, 0), 10))[0].word.drop_frame);
 }
 
 TEST(Timecode, AJitteryLineIsRead) {
-  const Signal signal = encode(30, at(10, 20, 30, 0), 100);
+  const LtcSignal signal = encode_ltc(30, at(10, 20, 30, 0), 100);
   EXPECT_GE(decode(signal, 15e-6).size(), 97u);  // 15 µs rms of a half bit of 208 µs
 }
 
 TEST(Timecode, LostEdgesLoseFramesAndNeverMakeWrongOnes) {
-  const Signal signal = encode(25, at(10, 20, 30, 0), 3000);
+  const LtcSignal signal = encode_ltc(25, at(10, 20, 30, 0), 3000);
   const auto words = decode(signal, 2e-6, 0.002);
   EXPECT_GT(words.size(),
             1000u);  // 120 edges a frame: four in five frames keep theirs; so must the two before
