@@ -9,7 +9,7 @@
 #include <cmath>
 #include <optional>
 
-#include "calibration/photometric/csv_table.h"
+#include "interface/csv_table.h"
 
 namespace lightwell::calibration {
 namespace {

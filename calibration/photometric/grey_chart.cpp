@@ -10,7 +10,7 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
-#include "calibration/photometric/csv_table.h"
+#include "interface/csv_table.h"
 
 namespace lightwell::calibration {
 namespace {

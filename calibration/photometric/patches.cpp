@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <map>
 
-#include "calibration/photometric/csv_table.h"
+#include "interface/csv_table.h"
 
 namespace lightwell::calibration {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <set>
 
-#include "calibration/photometric/csv_table.h"
+#include "interface/csv_table.h"
 #include "lighting/median.h"
 
 namespace lightwell::calibration {

@@ -10,7 +10,7 @@
 
 #include "lighting/result.h"
 
-namespace lightwell::calibration {
+namespace lightwell {
 
 // A CSV file with a line of column names, as RFC 4180 has it: fields in quotes may hold commas, line ends and doubled
 // quotes. A byte order mark, empty lines and lines that begin with # are skipped, blanks around a field are not part of
@@ -50,4 +50,4 @@ class CsvTable {
   std::vector<Row> rows_;
 };
 
-}  // namespace lightwell::calibration
+}  // namespace lightwell

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/photometric/csv_table.h"
+#include "interface/csv_table.h"
 
 #include <algorithm>
 #include <charconv>
@@ -9,7 +9,7 @@
 
 #include "interface/atomic_file.h"
 
-namespace lightwell::calibration {
+namespace lightwell {
 namespace {
 
 constexpr std::size_t kShown = 40;  // characters of a wrong field
@@ -208,4 +208,4 @@ Status CsvTable::require(std::initializer_list<std::string_view> columns) const 
   return {};
 }
 
-}  // namespace lightwell::calibration
+}  // namespace lightwell

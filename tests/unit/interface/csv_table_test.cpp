@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/photometric/csv_table.h"
+#include "interface/csv_table.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace lightwell::calibration {
+namespace lightwell {
 namespace {
 
 using testing::HasSubstr;
@@ -85,4 +85,4 @@ TEST(CsvTable, ANumberHasOneSign) {
 }
 
 }  // namespace
-}  // namespace lightwell::calibration
+}  // namespace lightwell

@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "cli/command.h"
+#include "cli/number_list.h"
+#include "cli/progress.h"
+#include "field/field_builder.h"
+#include "field/field_file.h"
+#include "field/probe_list.h"
+#include "interface/atomic_file.h"
+#include "interface/calibration_io.h"
+#include "interface/environment_io.h"
+#include "interface/option_range.h"
+#include "interface/printable.h"
+#include "interface/same_file.h"
+#include "lighting/field/field_sums.h"
+
+namespace lightwell::cli {
+namespace {
+
+constexpr int kMostPointsASide = 4096;
+constexpr int kMostDirections = 1 << 20;
+
+struct BuildArguments {
+  std::string probes, grid, bounds, out;
+  std::string method = "best", projection = "latlong", lens;
+  int degree = 4, directions = 0, threads = 0;
+  double max_error = 0, ball_radius_m = 0, blind_cone_deg = 2.1;
+  std::optional<double> camera_distance_m;
+  bool json = false;
+};
+
+Result<FieldGrid> grid_of(const BuildArguments& o) {
+  FieldGrid grid;
+  const auto size = number_list(o.grid, 3);
+  const auto whole = [](double n) { return n == std::floor(n) && n >= 2 && n <= kMostPointsASide; };
+  if (!size || !std::all_of(size->begin(), size->end(), whole))
+    return usage("--grid is " + o.grid + ", allowed: NX,NY,NZ, whole numbers from 2 to " +
+                 std::to_string(kMostPointsASide));
+  const auto bounds = number_list(o.bounds, 6);
+  if (!bounds)
+    return usage("--bounds is " + o.bounds + ", allowed: X0,Y0,Z0,X1,Y1,Z1, six numbers in metres");
+  for (std::size_t a = 0; a < 3; ++a) {
+    grid.size[a] = static_cast<int>((*size)[a]);
+    const auto axis = static_cast<Eigen::Index>(a);
+    grid.low[axis] = (*bounds)[a];
+    grid.high[axis] = (*bounds)[a + 3];
+    if (!(grid.high[axis] > grid.low[axis]) || !(std::abs(grid.low[axis]) <= 1e5) ||
+        !(std::abs(grid.high[axis]) <= 1e5))
+      return usage("--bounds is " + o.bounds +
+                   ", allowed: X0 < X1, Y0 < Y1, Z0 < Z1, -100000 to 100000 metres");
+  }
+  return grid;
+}
+
+Result<ProbeProjection> projection_of(const BuildArguments& o) {
+  if (o.projection != "fisheye" && !o.lens.empty()) return usage("--lens needs --projection fisheye");
+  if (o.projection != "mirror-ball" && (o.ball_radius_m > 0 || o.camera_distance_m))
+    return usage("--ball-radius and --camera-distance need --projection mirror-ball");
+  if (o.projection == "latlong") return ProbeProjection(LatLongProbe{});
+  if (o.projection == "mirror-ball") {
+    if (o.camera_distance_m && !(o.ball_radius_m > 0)) return usage("--camera-distance needs --ball-radius");
+    if (o.camera_distance_m && !(*o.camera_distance_m > o.ball_radius_m))
+      return usage("--camera-distance is " + std::to_string(*o.camera_distance_m) +
+                   ", allowed: above --ball-radius, from the ball's centre");
+    return ProbeProjection(
+        MirrorBallProbe{o.ball_radius_m, o.camera_distance_m, o.blind_cone_deg * kPi / 180});
+  }
+  if (o.projection != "fisheye")
+    return usage("--projection is " + o.projection + ", allowed: latlong, mirror-ball, fisheye");
+  if (o.lens.empty()) return usage("--projection fisheye needs --lens lens.json");
+  auto lens = read_lens(o.lens);
+  if (!lens) return lens.error();
+  return ProbeProjection(FisheyeProbe{*std::move(lens)});
+}
+
+// What the kernel says can be had without swapping; none where it does not say.
+std::optional<double> available_memory_bytes() {
+  std::ifstream file("/proc/meminfo");
+  std::string word;
+  double kib = 0;
+  while (file >> word)
+    if (word == "MemAvailable:" && file >> kib) return kib * 1024;
+  return std::nullopt;
+}
+
+// The sums, OpenVDB's copy of them, and the bytes of the file; what it was before points are left out.
+Status check_memory(const BuildArguments& o, const FieldGrid& grid) {
+  const double needed = FieldSums::bytes_needed(grid, o.degree) * 3.5;
+  const auto available = available_memory_bytes();
+  if (!available || needed <= *available) return {};
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "--grid %s at degree %d needs %.1f GB of memory, allowed: up to %.1f GB, what is free",
+                o.grid.c_str(), o.degree, needed / 1e9, *available / 1e9);
+  return usage(text);
+}
+
+// Pictures of a list; says once, for the first, that values were read as 0.
+ProbeTake take_of(const ProbeList& list, std::atomic<bool>& repaired) {
+  ProbeTake take;
+  take.positions = list.positions;
+  take.name = [&list](std::size_t i) { return list.files[i].string(); };
+  take.picture = [&list, &repaired](std::size_t i) -> Result<LatLongImage> {
+    auto environment = read_environment(list.files[i]);
+    if (!environment) return environment.error();
+    if (environment->not_finite + environment->negative > 0 && !repaired.exchange(true))
+      std::fprintf(
+          stderr, "lightwell: %s: values that are negative, NaN or infinite; read as 0, here and in others\n",
+          printable(list.files[i].string()).c_str());
+    return std::move(environment->image);
+  };
+  return take;
+}
+
+bool is_dark(const LightField& field) {
+  return std::all_of(field.radiance.begin(), field.radiance.end(), [](float value) { return value == 0; });
+}
+
+void report(const BuildArguments& o, const ProbeList& list, const FieldBuild& build,
+            const FieldFileReport& file, double seconds) {
+  const LightField& field = build.field;
+  const double confidence = std::accumulate(field.confidence.begin(), field.confidence.end(), 0.0) /
+                            static_cast<double>(field.confidence.size());
+  const auto points = field.grid.points();
+  if (!o.json) {
+    std::printf("probes            %zu, %d directions, %.1f %% of the sphere seen\n", list.files.size(),
+                build.directions, 100 * build.coverage);
+    if (build.support > 0)
+      std::printf("fit               over %d rays, held-out rays err %.3g of the RMS radiance\n",
+                  build.support, build.held_out_error);
+    std::printf("confidence        %.1f %% of all directions at all points have a measured ray near\n",
+                100 * confidence);
+    std::printf("written           %s, %.2f MB, %zu of %zu points, error %.2g\n", o.out.c_str(),
+                static_cast<double>(file.bytes) / 1e6, file.stored_points, points, file.rms_error);
+    return;
+  }
+  nlohmann::ordered_json json = {{"schema", "lightwell.field-build/1"},
+                                 {"out", o.out},
+                                 {"grid", field.grid.size},
+                                 {"degree", field.degree},
+                                 {"method", o.method},
+                                 {"probes", list.files.size()},
+                                 {"directions", build.directions},
+                                 {"coverage", build.coverage},
+                                 {"confidence", confidence},
+                                 {"points", points},
+                                 {"stored_points", file.stored_points},
+                                 {"bytes", file.bytes},
+                                 {"rms_error", file.rms_error},
+                                 {"most_error", file.most_error},
+                                 {"seconds", seconds}};
+  if (build.support > 0) {
+    json["support"] = build.support;
+    json["held_out_error"] = build.held_out_error;
+  }
+  std::printf("%s\n", json.dump(2).c_str());
+}
+
+int run(const BuildArguments& o) {
+  const auto begin = std::chrono::steady_clock::now();
+  FieldBuildOptions options;
+  const auto grid = grid_of(o);
+  if (!grid) return fail(grid.error());
+  options.grid = *grid;
+  if (o.method != "best" && o.method != "low")
+    return fail(usage("--method is " + o.method + ", allowed: best, low"));
+  options.method = o.method == "best" ? FieldMethod::best : FieldMethod::low;
+  options.degree = o.degree;
+  options.directions = o.directions;
+  options.threads =
+      o.threads > 0 ? static_cast<unsigned>(o.threads) : std::max(1u, std::thread::hardware_concurrency());
+  if (const Status enough = check_memory(o, *grid); !enough) return fail(enough.error());
+  auto projection = projection_of(o);
+  if (!projection) return fail(projection.error());
+  options.projection = *std::move(projection);
+  options.scratch_folder = std::filesystem::path(o.out).parent_path();
+  const auto list = read_probe_list(o.probes);
+  if (!list) return fail(list.error());
+  if (const Status other = check_output_is_no_input(o.out, {o.probes}); !other) return fail(other.error());
+  for (const std::string& remark : remarks_on_places(list->positions, *grid))
+    std::fprintf(stderr, "lightwell: %s\n", remark.c_str());
+  std::atomic<bool> repaired = false;
+  std::optional<Progress> bar;
+  const auto build = build_field(take_of(*list, repaired), options, [&](std::size_t done, std::size_t total) {
+    if (!bar) bar.emplace(total);
+    bar->done(done);
+  });
+  bar.reset();
+  if (!build) return fail(build.error());
+  if (is_dark(build->field)) std::fprintf(stderr, "lightwell: no probe has any light: the field is dark\n");
+  const auto file = write_field(o.out, build->field, {o.method, o.max_error});
+  if (!file) return fail(file.error());
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  report(o, *list, *build, *file, taken.count());
+  return 0;
+}
+
+}  // namespace
+
+Command add_field_build(CLI::App& field) {
+  const auto o = std::make_shared<BuildArguments>();
+  CLI::App* command = field.add_subcommand("build", "Resample pictures of many places to a grid of light");
+  command->footer(
+      "Example: lightwell field build probes.csv --grid 32,16,32 --bounds -2,0,-2,2,2,2 --out field.vdb\n"
+      "probes.csv: x,y,z,file (metres; images of one size, EXR or Radiance HDR)");
+  command->add_option("probes", o->probes, "List of probes, CSV with columns x,y,z,file")
+      ->required()
+      ->type_name("CSV");
+  command->add_option("--grid", o->grid, "Points along each axis, 2 to 4096")
+      ->required()
+      ->type_name("NX,NY,NZ");
+  command->add_option("--bounds", o->bounds, "Places of the outermost points, metres")
+      ->required()
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+  command->add_option("--degree", o->degree, "Degree of the spherical harmonics, 1 to 8")
+      ->check(whole_numbers(1, kMostFieldDegree))
+      ->capture_default_str();
+  command
+      ->add_option("--method", o->method,
+                   "best: local fits chosen by held-out rays; low: the splat of Löw et al. 2009")
+      ->capture_default_str()
+      ->type_name("METHOD");
+  command->add_option("--projection", o->projection, "Of the images: latlong, mirror-ball, fisheye")
+      ->capture_default_str()
+      ->type_name("NAME");
+  command
+      ->add_option("--ball-radius", o->ball_radius_m,
+                   "Mirror ball's radius, metres: its rays start on its surface")
+      ->check(numbers_above_0_to(10, "above 0 to 10 metres"))
+      ->type_name("M");
+  command
+      ->add_option("--camera-distance", o->camera_distance_m,
+                   "From the mirror ball's centre to the camera, metres; else as if from far away")
+      ->check(numbers_above_0_to(1000, "above 0 to 1000 metres"))
+      ->type_name("M");
+  command
+      ->add_option("--blind-cone", o->blind_cone_deg,
+                   "Half angle behind the mirror ball of which its rim shows nothing")
+      ->check(numbers_from(0, 60, "0 to 60 degrees"))
+      ->capture_default_str()
+      ->type_name("DEG");
+  command->add_option("--lens", o->lens, "lens.json of a fisheye probe")->type_name("FILE");
+  command
+      ->add_option("--directions", o->directions,
+                   "Into how many directions to cut the sphere; 0: as many as the grid needs")
+      ->check(whole_numbers(0, kMostDirections))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--max-error", o->max_error,
+          "Leave out points that coarser ones foretell within this part of the field's RMS; 0: store all")
+      ->check(numbers_from(0, 1, "0 to 1"))
+      ->capture_default_str()
+      ->type_name("E");
+  command->add_option("--threads", o->threads, "0: one a core; the result is the same")
+      ->check(whole_numbers(0, 1024))
+      ->capture_default_str();
+  command->add_option("--out", o->out, "The field, OpenVDB")
+      ->required()
+      ->check(output_file())
+      ->type_name("FILE");
+  command->add_flag("--json", o->json, "Machine-readable result on stdout");
+  return {command, [o] { return run(*o); }};
+}
+
+}  // namespace lightwell::cli

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lighting/field/direction_estimator.h"
+#include "lighting/field/light_field.h"
+#include "lighting/lat_long_image.h"
+#include "lighting/result.h"
+
+namespace lightwell {
+
+// Pictures of one size from known places. picture and name are called by several threads at once.
+struct ProbeTake {
+  std::vector<Vec3d> positions;  // world, metres; at least one
+  std::function<Result<LatLongImage>(std::size_t)> picture;
+  std::function<std::string(std::size_t)> name;  // of a picture, for errors
+};
+
+struct FieldBuildOptions {
+  FieldGrid grid;
+  int degree = 4;
+  FieldMethod method = FieldMethod::best;
+  ProbeProjection projection = LatLongProbe{};
+  int directions = 0;                    // cells of the sphere; 0: direction_count_for the grid
+  unsigned threads = 1;                  // the result is the same to the last bit for any number
+  std::filesystem::path scratch_folder;  // sorted samples: probes × directions × 12 bytes while it runs
+};
+
+struct FieldBuild {
+  LightField field;
+  int directions = 0;         // that are seen
+  double coverage = 0;        // part of the sphere that a probe sees
+  int support = 0;            // rays of a fit, of best
+  double held_out_error = 0;  // SupportChoice::held_out_error, of best
+};
+
+// done of total: pictures first, then directions; called from one thread at a time.
+using FieldProgress = std::function<void(std::size_t done, std::size_t total)>;
+
+// Resamples a take to a field: pictures are cut into directions and sorted into buckets on disk, then each bucket is read
+// once and added to the running sums. Memory: the field, a bucket, and a few pictures, however long the take.
+// Fails where a picture cannot be read or is not of the first one's size (bad_input), or the disk is full (failed).
+// source: Löw et al. 2009, section 3
+Result<FieldBuild> build_field(const ProbeTake& take, const FieldBuildOptions& options,
+                               const FieldProgress& progress = {});
+
+}  // namespace lightwell

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/integration/commands/command_fixture.h"
+#include "tests/support/analytic_fields.h"
+
+namespace lightwell::test {
+namespace {
+
+using testing::HasSubstr;
+
+class FieldCommandTest : public CommandTest {
+ protected:
+  // Pictures of a linear field, and their list.
+  void SetUp() override {
+    const auto positions = random_positions(60, 1, 0.1);
+    std::ofstream list(path("probes.csv"));
+    list << "x,y,z,file\n";
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const std::string name = "p" + std::to_string(i) + ".exr";
+      list << positions[i].x() << "," << positions[i].y() << "," << positions[i].z() << "," << name << "\n";
+      LatLongImage image{32, 16, {}};
+      for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 32; ++x)
+          image.pixels.push_back(
+              linear_field(positions[i], direction_from_lat_long((x + 0.5) / 32, (y + 0.5) / 16))
+                  .cast<float>());
+      ASSERT_TRUE(write_environment(path(name), image));
+    }
+  }
+  [[nodiscard]] ProcessResult build(const std::vector<std::string>& more,
+                                    const std::string& list = "probes.csv") const {
+    std::vector<std::string> arguments = {"field",    "build",       path(list),     "--grid", "5,4,5",
+                                          "--bounds", "0,0,0,1,1,1", "--directions", "600"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return lightwell(arguments);
+  }
+  void expect_refused(const ProcessResult& result, int code, const std::string& text) const {
+    EXPECT_EQ(result.exit_code, code) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(text));
+    EXPECT_FALSE(std::filesystem::exists(path("f.vdb")));
+  }
+};
+
+TEST_F(FieldCommandTest, AQueryGivesTheLightAtAPlace) {
+  const auto built = build({"--out", path("f.vdb"), "--json"});
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  const auto report = nlohmann::json::parse(built.out);
+  EXPECT_EQ(report["probes"], 60);
+  EXPECT_EQ(report["stored_points"], 100);
+  EXPECT_NEAR(report["coverage"], 1, 1e-3);
+  EXPECT_EQ(report["bytes"], std::filesystem::file_size(path("f.vdb")));
+
+  const Vec3d at(0.3, 0.6, 0.45);
+  const auto asked =
+      lightwell({"field", "query", path("f.vdb"), "--at", "0.3,0.6,0.45", "--normal", "0,2,0", "--json"});
+  ASSERT_EQ(asked.exit_code, 0) << asked.err;
+  const auto answer = nlohmann::json::parse(asked.out);
+  const Eigen::MatrixXd exact = exact_harmonics(linear_field, at, 4, 3000);
+  ASSERT_EQ(answer["sh"].size(), 25u);
+  // Pictures of 11° a pixel, 60 probes, half floats: a hundredth of √4π.
+  for (std::size_t i = 0; i < 25; ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(answer["sh"][i][c].get<double>(),
+                  exact(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)), 0.035);
+  LightAtPoint light;
+  light.radiance = exact.array();
+  for (std::size_t c = 0; c < 3; ++c)
+    EXPECT_NEAR(answer["irradiance"][c].get<double>(),
+                irradiance(light, Vec3d::UnitY())[static_cast<Eigen::Index>(c)], 0.05);
+  EXPECT_GT(answer["confidence"], 0.9);
+
+  const auto outside = lightwell({"field", "query", path("f.vdb"), "--at", "0.3,1.6,0.45", "--json"});
+  EXPECT_EQ(outside.exit_code, 2);
+  EXPECT_THAT(outside.err,
+              HasSubstr("--at is 0.3,1.6,0.45, allowed: inside the field, 0,0,0 to 1,1,1 metres"));
+}
+
+TEST_F(FieldCommandTest, TheNumberOfThreadsChangesNothing) {
+  ASSERT_EQ(build({"--out", path("a.vdb"), "--threads", "1"}).exit_code, 0);
+  ASSERT_EQ(build({"--out", path("b.vdb"), "--threads", "3"}).exit_code, 0);
+  const auto query = [&](const std::string& file) {
+    return lightwell({"field", "query", path(file), "--at", "0.7,0.1,0.2", "--json"}).out;
+  };
+  EXPECT_EQ(query("a.vdb"), query("b.vdb"));
+}
+
+TEST_F(FieldCommandTest, BadInputIsOneLineAndLeavesNothing) {
+  const std::vector<std::string> out = {"--out", path("f.vdb")};
+  const auto list = [&](const std::string& text) {
+    std::ofstream(path("other.csv")) << text;
+    return build(out, "other.csv");
+  };
+  expect_refused(list("x,y,z,file\n0,0,0,p0.exr\nnan,0,0,p1.exr\n"), 3, "other.csv: line 3");
+  expect_refused(list("x,y,z,file\n0,0,0,absent.exr\n"), 3, "absent.exr");
+  std::ofstream(path("cut.exr")) << "v/1";
+  expect_refused(list("x,y,z,file\n0,0,0,p0.exr\n0,0,1,cut.exr\n"), 3, "cut.exr");
+  ASSERT_TRUE(write_environment(path("small.exr"), sky(16, 8)));
+  expect_refused(list("x,y,z,file\n0,0,0,p0.exr\n0,0,1,small.exr\n"), 3,
+                 "small.exr: is 16x8 pixels, allowed 32x16, the size of");
+  const auto huge = lightwell({"field", "build", path("probes.csv"), "--grid", "4096,4096,4096", "--bounds",
+                               "0,0,0,1,1,1", "--out", path("f.vdb")});
+  expect_refused(huge, 2, "--grid 4096,4096,4096 at degree 4 needs 73117.5 GB of memory, allowed: up to");
+  expect_refused(build({"--out", path("f.vdb"), "--method", "nearest"}), 2, "allowed: best, low");
+  expect_refused(build({"--out", path("f.vdb"), "--projection", "fisheye"}), 2, "--lens");
+  expect_refused(build({"--out", path("absent/f.vdb")}), 1, "absent");
+  const auto flat = lightwell({"field", "build", path("probes.csv"), "--grid", "4,4,4", "--bounds",
+                               "0,0,0,1,0,1", "--out", path("f.vdb")});
+  expect_refused(flat, 2, "--bounds is 0,0,0,1,0,1, allowed: X0 < X1");
+}
+
+TEST_F(FieldCommandTest, SaysWhatOneProbeDoesNotDetermine) {
+  std::ofstream(path("one.csv")) << "x,y,z,file\n0.5,0.5,0.5,p0.exr\n";
+  const auto built = build({"--out", path("f.vdb")}, "one.csv");
+  EXPECT_EQ(built.exit_code, 0) << built.err;
+  EXPECT_THAT(built.err, HasSubstr("in one place: how light changes from place to place is not determined"));
+}
+
+TEST_F(FieldCommandTest, AFullDiskIsOneLineAndLeavesNothing) {
+  ChildProcess::Options options;
+  options.file_bytes = 100000;  // the sorted samples need 60 · 600 · 12 bytes
+  ChildProcess child({LIGHTWELL_BIN_DIR "/lightwell", "field", "build", path("probes.csv"), "--grid", "5,4,5",
+                      "--bounds", "0,0,0,1,1,1", "--directions", "600", "--out", path("f.vdb")},
+                     path("stderr.txt"), options);
+  EXPECT_EQ(child.wait_for_end(), 1);
+  EXPECT_THAT(child.stderr_text(), HasSubstr("sorting the probes' light needs 0.4 MB here while it runs: "));
+  EXPECT_FALSE(std::filesystem::exists(path("f.vdb")));
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(path("x")).parent_path()))
+    EXPECT_EQ(entry.path().filename().string().find("lightwell-field"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lightwell::test
