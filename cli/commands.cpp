@@ -35,9 +35,9 @@ Command add_status(CLI::App& app);
 
 std::vector<Command> add_commands(CLI::App& app) {
   return {
-      add_lights(app),    add_evaluate(app), add_fit(app), add_field(app),    add_bench(app),  add_board(app),
-      add_calibrate(app), add_devices(app),  add_doctor(app), add_filter(app), add_play(app),
-      add_info(app),      add_record(app),   add_repair(app), add_status(app),
+      add_lights(app), add_evaluate(app),  add_fit(app),     add_field(app),  add_bench(app),
+      add_board(app),  add_calibrate(app), add_devices(app), add_doctor(app), add_filter(app),
+      add_play(app),   add_info(app),      add_record(app),  add_repair(app), add_status(app),
   };
 }
 
