@@ -29,6 +29,10 @@ std::string alarm_for(const DaemonStatus& status) {
     return fmt::format("Light is {:.1f} s old", status.frame_age_ms / 1000);
   if (status.board.state == BoardState::no_device || status.board.state == BoardState::wrong_firmware)
     return fmt::format("Sync board: {} ({})", name(status.board.state), status.board.description);
+  if (!status.board.refused.empty())
+    return "Sync board: it refuses what it was told: " + status.board.refused;
+  if (status.board.status && status.board.status->safe != 0)
+    return "Sync board: it went back to safe defaults, as the daemon was silent";
   if (const auto& scale = status.board.photodiode_check; scale && scale->differs)
     return fmt::format(
         "Scale: camera and photodiode differ by a factor of {:.2f} ({:.0f} and {:.0f} lx); is the dome "

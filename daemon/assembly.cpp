@@ -176,8 +176,8 @@ Result<std::optional<BoardOptions>> board_options(const Configuration& configura
   return std::optional(options);
 }
 
-Result<BoardUse::Options> board_use_options(const Configuration& configuration,
-                                            const Calibration& calibration) {
+Result<Adaptation::Options> adaptation_options(const Configuration& configuration,
+                                               const Calibration& calibration) {
   const auto& given = configuration.board;
   std::optional<Eigen::Matrix3d> rotation;
   if (!given.axes.empty()) {
@@ -193,7 +193,8 @@ Result<BoardUse::Options> board_use_options(const Configuration& configuration,
   }
   const auto board = board_options(configuration);
   if (!board) return board.error();
-  BoardUse::Options options{CalibrationChoice(calibration, std::move(flats), rotation), std::nullopt, false};
+  Adaptation::Options options{CalibrationChoice(calibration, std::move(flats), rotation), std::nullopt,
+                              false};
   if (*board && (*board)->trigger) {
     const BoardOptions::Trigger& trigger = *(*board)->trigger;
     options.trigger = TriggerChoice{static_cast<double>(trigger.rate_numerator) / trigger.rate_denominator,

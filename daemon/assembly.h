@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "daemon/board_use.h"
+#include "daemon/adaptation.h"
 #include "daemon/capture/capture_source.h"
 #include "daemon/configuration.h"
 #include "daemon/pipeline/frame_path.h"
@@ -26,10 +26,10 @@ FramePathOptions frame_path_options(const Configuration& configuration);
 // Empty where nothing is to be fitted.
 std::optional<FewLightsOptions> fit_options(const Configuration& configuration);
 
-// What the board's words are used for. usage: axes that are none, naming key, value and what is allowed; bad_input: a fixed
+// What is adapted to. usage: axes that are none, naming key, value and what is allowed; bad_input: a fixed
 // pattern of the folder that cannot be read.
-Result<BoardUse::Options> board_use_options(const Configuration& configuration,
-                                            const Calibration& calibration);
+Result<Adaptation::Options> adaptation_options(const Configuration& configuration,
+                                               const Calibration& calibration);
 // Empty where the address is none of GPIO lines. usage: lines, a rate or a pulse that do not go together, naming key, value
 // and what is allowed.
 Result<std::optional<GpioOptions>> gpio_options(const Configuration& configuration);

@@ -5,10 +5,13 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <filesystem>
+#include <future>
 #include <limits>
 #include <mutex>
 
+#include "daemon/adaptation.h"
 #include "daemon/alarm.h"
 #include "daemon/assembly.h"
 #include "daemon/clock.h"
@@ -89,10 +92,11 @@ struct Daemon::Parts {
   std::unique_ptr<Publisher> publisher;
   std::unique_ptr<FitWorker> fits;
   std::unique_ptr<WebServer> web;
-  std::unique_ptr<GpioSync> gpio;       // null: the address is none of GPIO lines
-  std::unique_ptr<SyncBoard> board;     // null: none is configured; its button asks the others
-  std::unique_ptr<BoardUse> board_use;  // null with it
-  std::string logged_mismatch;          // log_changes' own
+  std::unique_ptr<GpioSync> gpio;    // null: the address is none of GPIO lines
+  std::unique_ptr<SyncBoard> board;  // null: none is configured; its button asks the others
+  std::future<void> button;          // what its last press began
+  std::unique_ptr<Adaptation> adaptation;
+  std::string logged_mismatch;  // log_changes' own
 };
 
 Status Daemon::check(const Configuration& configuration) {
@@ -106,7 +110,7 @@ Status Daemon::check(const Configuration& configuration) {
   if (const auto gpio = gpio_options(configuration); !gpio) return gpio.error();
   const auto calibration = choose_calibration(configuration);
   if (!calibration) return calibration.error();
-  if (const auto use = board_use_options(configuration, *calibration); !use) return use.error();
+  if (const auto use = adaptation_options(configuration, *calibration); !use) return use.error();
   return check_frames_fit(configuration, *calibration);
 }
 
@@ -119,13 +123,20 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Configuration& configuration
   if (!gpio) return gpio.error();
   auto calibration = choose_calibration(configuration);
   if (!calibration) return calibration.error();
-  auto use = board_use_options(configuration, *calibration);
+  auto use = adaptation_options(configuration, *calibration);
   if (!use) return use.error();
 
   auto parts = std::make_unique<Parts>(configuration, *calibration);
   Parts& p = *parts;
   p.use_stampers(configuration.source.address);
   std::unique_ptr<Daemon> daemon(new Daemon(std::move(parts)));
+  // Before those who ask for the status of all.
+  if (*gpio) p.gpio = std::make_unique<GpioSync>(std::move(**gpio), p.strobes);
+  if (*board) {
+    (*board)->on_button = [d = daemon.get()](sync_press press) { d->take_button(press); };
+    p.board = std::make_unique<SyncBoard>(std::move(**board), p.strobes, p.timecodes);
+  }
+  p.adaptation = std::make_unique<Adaptation>(p.board.get(), p.pipeline, p.snapshots, std::move(*use));
   auto publisher = Publisher::start({configuration.probe.name,
                                      {configuration.dds.domain, configuration.dds.network_interface},
                                      configuration.dds.environment_hz},
@@ -142,12 +153,6 @@ Result<std::unique_ptr<Daemon>> Daemon::start(const Configuration& configuration
       std::move(*source),
       std::make_shared<FramePath>(p.calibration, frame_path_options(configuration), p.snapshots));
   if (!started) return started.error();
-  if (*gpio) p.gpio = std::make_unique<GpioSync>(std::move(**gpio), p.strobes);
-  if (*board) {
-    (*board)->on_button = [d = daemon.get()](sync_press press) { d->take_button(press); };
-    p.board = std::make_unique<SyncBoard>(std::move(**board), p.strobes, p.timecodes);
-    p.board_use = std::make_unique<BoardUse>(*p.board, p.pipeline, p.snapshots, std::move(*use));
-  }
   return daemon;
 }
 
@@ -163,10 +168,11 @@ Status Daemon::reload(const Configuration& wanted) {
     return Error{ErrorKind::usage, section + " changed; that takes a restart"};
   const auto calibration = choose_calibration(wanted);
   if (!calibration) return calibration.error();
-  auto use = board_use_options(wanted, *calibration);
+  auto use = adaptation_options(wanted, *calibration);
   if (!use) return use.error();
   std::shared_ptr<CaptureSource> source;
-  if (now.source != wanted.source) {
+  const bool source_changed = now.source != wanted.source;
+  if (source_changed) {
     auto made = make_capture_source(wanted.source.address, capture_options(wanted));
     if (!made) return made.error();
     source = std::move(*made);
@@ -179,7 +185,7 @@ Status Daemon::reload(const Configuration& wanted) {
   if (now.fit != wanted.fit) parts_->fits->set_options(fit_options(wanted));
   parts_->configuration = wanted;
   parts_->calibration = *calibration;
-  if (parts_->board_use) parts_->board_use->use(std::move(*use));
+  parts_->adaptation->use(std::move(*use), !source_changed);
   return {};
 }
 
@@ -188,12 +194,19 @@ void Daemon::close_take() {
   if (const Status closed = parts_->recorder.stop(); !closed) spdlog::error("{}", closed.error().message);
 }
 
-// A short press begins a take or ends it.
+// A short press begins a take or ends it, on a thread of its own: a slow disk must not keep the board from its heartbeat.
 void Daemon::take_button(sync_press press) {
   if (press != SYNC_BUTTON_SHORT) return;
-  const Status done =
-      parts_->recorder.stats().active ? stop_recording() : start_recording(take_name_at(utc_now_ns()));
-  if (!done) spdlog::error("record button: {}", done.error().message);
+  std::future<void>& button = parts_->button;
+  if (button.valid() && button.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+    spdlog::warn("record button: the last press is still being worked on");
+    return;
+  }
+  button = std::async(std::launch::async, [this] {
+    const Status done =
+        parts_->recorder.stats().active ? stop_recording() : start_recording(take_name_at(utc_now_ns()));
+    if (!done) spdlog::error("record button: {}", done.error().message);
+  });
 }
 
 void Daemon::tell_board() {
@@ -205,15 +218,17 @@ void Daemon::tell_board() {
                                                      : idle);
 }
 
-void Daemon::use_board() {
-  if (!parts_->board_use) return;
+void Daemon::adapt() {
+  const std::scoped_lock lock(
+      parts_->mutex);  // no take begins meanwhile, with a calibration that is not to be its own
   if (is_take(parts_->configuration.source.address)) return;  // its light is not the light on set
-  const auto camera = parts_->board->view().temperature[SYNC_SENSOR_CAMERA];
-  parts_->temperatures.set(camera ? static_cast<float>(camera->temperature_mc) * 1e-3F
-                                  : std::numeric_limits<float>::quiet_NaN());
-  const auto calibration = parts_->board_use->turn(parts_->recorder.stats().active);
+  if (parts_->board) {
+    const auto camera = parts_->board->view().temperature[SYNC_SENSOR_CAMERA];
+    parts_->temperatures.set(camera ? static_cast<float>(camera->temperature_mc) * 1e-3F
+                                    : std::numeric_limits<float>::quiet_NaN());
+  }
+  const auto calibration = parts_->adaptation->turn(parts_->recorder.stats().active);
   if (!calibration) return;
-  const std::scoped_lock lock(parts_->mutex);
   const Status replaced = parts_->pipeline.replace(
       nullptr, std::make_shared<FramePath>(*calibration, frame_path_options(parts_->configuration),
                                            parts_->snapshots));
@@ -226,6 +241,7 @@ void Daemon::use_board() {
 void Daemon::stop() {
   close_take();                              // first: nothing else can lose anything
   if (parts_->board) parts_->board->stop();  // its button may ask for a take
+  parts_->button = {};
   parts_->pipeline.stop();
   parts_->snapshots.close();
   parts_->web.reset();
@@ -279,7 +295,7 @@ DaemonStatus Daemon::status() const {
     status.board = parts_->board->view();
     status.board.stamped = parts_->stamper.stamped();
     status.board.left = parts_->stamper.left();
-    parts_->board_use->describe(status.board);
+    parts_->adaptation->describe(status.board);
   }
   status.alarm = alarm_for(status);
   return status;

@@ -45,8 +45,8 @@ class Daemon final : public DaemonControl {
   void log_changes();
   // Shows on the sync board's LED how the daemon does; looked at as log_changes is.
   void tell_board();
-  // Does with its words what is asked for (daemon/board_use.h); about once a second, by the thread that reloads.
-  void use_board();
+  // To gravity, temperature and lamps (daemon/adaptation.h); about once a second, by the thread that reloads.
+  void adapt();
   // A recording as source that is not looped has come to its end.
   [[nodiscard]] bool ended() const;
 

@@ -91,7 +91,12 @@ int block_signals() {
 void reload(Daemon& daemon, const Arguments& arguments) {
   sd_notifyf(0, "RELOADING=1\nMONOTONIC_USEC=%lld", static_cast<long long>(mono_now_ns() / 1000));
   const auto loaded = load_configuration(arguments.config, arguments.overrides());
-  const Status done = loaded ? daemon.reload(loaded->configuration) : Status(loaded.error());
+  Status done = loaded ? Status() : Status(loaded.error());
+  try {
+    if (done) done = daemon.reload(loaded->configuration);
+  } catch (const std::exception& thrown) {  // a live set is not ended by what it was to change to
+    done = Error{ErrorKind::failed, thrown.what()};
+  }
   if (done) {
     spdlog::set_level(spdlog::level::from_str(loaded->configuration.log.level));
     spdlog::info("configuration reloaded");
@@ -117,7 +122,7 @@ void serve(Daemon& daemon, const Arguments& arguments, int signals) {
     }
     daemon.log_changes();
     daemon.tell_board();
-    daemon.use_board();
+    daemon.adapt();
     const std::uint64_t heartbeat = daemon.heartbeat();
     if (watched && heartbeat != last_heartbeat) sd_notify(0, "WATCHDOG=1");
     last_heartbeat = heartbeat;

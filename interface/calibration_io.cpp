@@ -135,6 +135,9 @@ Result<std::vector<FlatAtTemperature>> flats_by_temperature(const std::filesyste
     if (!text) return text.error();
     const auto root = parse_json(*text, entry.path().string());
     if (!root) return root.error();
+    if (!root->is_object())
+      return Error{ErrorKind::bad_input,
+                   entry.path().string() + ": not a JSON object, as a fixed pattern is"};
     const json fit = root->value("fit", json::object());
     if (!fit.is_object()) continue;
     for (const char* key : {"dark_temperature_c", "temperature_c"}) {

@@ -24,8 +24,4 @@ const char* name(SourceState state) {
   return "unknown";
 }
 
-Status CaptureSource::set_exposure_us(double) {
-  return Error{ErrorKind::failed, "this source cannot change its exposure while it runs"};
-}
-
 }  // namespace lightwell

@@ -92,6 +92,12 @@ struct CaptureCounters {
   std::uint64_t reconnects = 0;
 };
 
+enum class ExposureChange {
+  asked,    // the device is being told
+  not_now,  // there is no device now
+  never,    // this source cannot change it while it runs
+};
+
 // A camera, a recording or a simulation. One implementation a file; made by make_capture_source from a source string.
 //
 // Threading: start, wait and stop are called one after the other, by whichever thread; wait only by the frame path's. The
@@ -109,9 +115,9 @@ class CaptureSource {
   // Stops within 5 s, device included. Leases may outlive stop but not the source.
   virtual void stop() noexcept = 0;
 
-  // Asks for another exposure; frames say in exposure_us from when it holds. Any thread, between start and stop. failed:
-  // the source cannot do that while it runs.
-  virtual Status set_exposure_us(double exposure_us);
+  // Asks for another exposure; frames say in exposure_us from when it holds, and whether it came. Any thread, between
+  // start and stop.
+  virtual ExposureChange set_exposure_us(double /*exposure_us*/) { return ExposureChange::never; }
 
   [[nodiscard]] virtual SourceState state() const noexcept = 0;
   // One line for a person: what is connected, or what is wrong and what to do.

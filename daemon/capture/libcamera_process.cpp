@@ -44,6 +44,8 @@ bool LibcameraProcess::start(const std::string& argument) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
+  posix_spawn_file_actions_addclosefrom_np(&actions,
+                                           STDERR_FILENO + 1);  // libraries' sockets are not all its to close
   // Signals that end the host end it too, once the host has hung up.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);

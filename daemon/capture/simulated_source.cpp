@@ -95,14 +95,10 @@ class SimulatedSource final : public CaptureSource {
     drop_ready();
   }
 
-  Status set_exposure_us(double exposure_us) override {
-    const double longest_us = 1e6 / setup_.rate_hz;
-    if (!(exposure_us > 0 && exposure_us <= longest_us))
-      return Error{ErrorKind::usage, "exposure_us = " + std::to_string(exposure_us) +
-                                         ": allowed above 0, up to the period of " +
-                                         std::to_string(longest_us)};
-    exposure_us_ = exposure_us;
-    return {};
+  ExposureChange set_exposure_us(double exposure_us) override {
+    if (exposure_us > 0 && exposure_us <= 1e6 / setup_.rate_hz)
+      exposure_us_ = exposure_us;  // else as a camera refuses
+    return ExposureChange::asked;
   }
 
   [[nodiscard]] SourceState state() const noexcept override {

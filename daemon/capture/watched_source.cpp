@@ -168,13 +168,13 @@ std::unique_ptr<CaptureSession> WatchedSource::connect() {
   }
 }
 
-Status WatchedSource::set_exposure_us(double exposure_us) {
+ExposureChange WatchedSource::set_exposure_us(double exposure_us) {
   const std::lock_guard lock(mutex_);
-  if (current_ == nullptr) return Error{ErrorKind::failed, "there is no camera now"};
-  if (!current_->sets_exposure()) return CaptureSource::set_exposure_us(exposure_us);
+  if (current_ == nullptr) return ExposureChange::not_now;
+  if (!current_->sets_exposure()) return ExposureChange::never;
   wanted_exposure_us_ = exposure_us;
   current_->wake();
-  return {};
+  return ExposureChange::asked;
 }
 
 // Kept for a camera that comes back: whoever changed it does not know that it went.

@@ -35,7 +35,7 @@ class WatchedSource final : public CaptureSource {
 
   Status start() override;
   FrameLease wait(std::chrono::milliseconds timeout) noexcept override;
-  Status set_exposure_us(double exposure_us) override;
+  ExposureChange set_exposure_us(double exposure_us) override;
   void stop() noexcept override;
   [[nodiscard]] SourceState state() const noexcept override;
   [[nodiscard]] std::string describe() const override;

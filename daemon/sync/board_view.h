@@ -39,7 +39,7 @@ struct BoardView {
   std::optional<sync_timecode> timecode;
   // Frames whose exposure the strobe told, and those it did not.
   std::uint64_t stamped = 0, left = 0;
-  // What the daemon makes of it (daemon/board_use.h).
+  // What the daemon makes of it (daemon/adaptation.h).
   std::optional<PhotodiodeCheck::Verdict> photodiode_check;
   std::optional<TriggerChoice> avoiding;  // trigger and exposure, where lamps moved them from those asked for
   double tilt_deg = 0;                    // of the camera off the zenith, by the calibration in use

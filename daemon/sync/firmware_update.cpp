@@ -18,6 +18,7 @@ constexpr auto kErase = 20s;    // of 128 KB sectors, each up to 4 s by the chip
 constexpr auto kBlock = 500ms;  // a write of 128 bytes takes 2 ms
 constexpr auto kVerify = 5s;
 constexpr int kTries = 4;
+constexpr const char* kBoard = "stm32f405";
 
 sync_message message_of(sync_type type) {
   sync_message message{};
@@ -52,6 +53,9 @@ Status send_blocks(SyncConversation& board, const std::vector<std::uint8_t>& byt
 
 Result<sync_hello> update_firmware(SyncLink& link, const FirmwareFile& firmware,
                                    const std::function<void(double)>& progress) {
+  if (firmware.board != kBoard)
+    return Error{ErrorKind::bad_input,
+                 fmt::format("board = \"{}\": allowed {}, the one there is", firmware.board, kBoard)};
   SyncConversation board(link);
   const auto hello = board.greet();
   if (!hello) return hello.error();

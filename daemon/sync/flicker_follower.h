@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "interface/sync_protocol.h"
 
@@ -34,7 +35,12 @@ class FlickerFollower {
   [[nodiscard]] std::optional<TriggerChoice> change_to(const TriggerChoice& choice, std::int64_t now_mono_ns);
 
   TriggerChoice wanted_, current_;
-  double lamp_hz_ = 0;  // for whose sake current_ is not wanted_
+  struct Lamp {
+    double hz = 0, depth = 0;
+  };
+  [[nodiscard]] bool known(const Lamp& lamp) const;
+
+  std::vector<Lamp> lamps_;  // for whose sake current_ is not wanted_
   std::int64_t changed_mono_ns_ = 0;
   bool changed_ = false;
 };

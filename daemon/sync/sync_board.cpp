@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -26,6 +28,19 @@ sync_message message_of(sync_type type) {
   sync_message message{};
   message.type = static_cast<std::uint8_t>(type);
   return message;
+}
+
+// But for where it is kept.
+bool same(const sync_configuration& a, const sync_configuration& b) {
+  std::array<std::uint8_t, SYNC_MAX_PAYLOAD> packed_a{}, packed_b{};
+  sync_message message = message_of(SYNC_CONFIGURE);
+  message.configuration = a;
+  message.configuration.store = 0;
+  const std::size_t size = sync_pack(&message, packed_a.data());
+  message.configuration = b;
+  message.configuration.store = 0;
+  sync_pack(&message, packed_b.data());
+  return std::equal(packed_a.begin(), packed_a.begin() + static_cast<std::ptrdiff_t>(size), packed_b.begin());
 }
 
 std::string hello_text(const sync_hello& hello) {
@@ -75,26 +90,26 @@ void SyncBoard::run() {
   while (!stopping_) {
     const Status ended = meet();
     agreed_ = false;
-    // What a board of another version said stays to be read.
-    if (!ended && view().state != BoardState::wrong_firmware)
-      set_state(BoardState::no_device, ended.error().message);
+    if (!ended) set_state(BoardState::no_device, ended.error().message);
     while (!stopping_ && !port_->wait(kTurn)) continue;
   }
 }
 
 Status SyncBoard::meet() {
   const auto link = port_->open();
-  return link ? converse(**link) : Status(link.error());
+  if (!link) return link.error();
+  const Status ended = converse(**link);
+  // What a board of another version said stays to be read, while it is there.
+  return view().state == BoardState::wrong_firmware ? Status() : ended;
 }
 
 Status SyncBoard::converse(SyncLink& link) {
   frame_receiver_init(&receiver_);
   clock_.reset();
   last_sequence_.reset();
-  to_configure_.reset();
-  told_ = false;
+  forget_configuration();
   last_board_ns_ = 0;
-  next_hello_ns_ = next_question_ns_ = next_ping_ns_ = next_state_ns_ = 0;
+  next_hello_ns_ = next_ping_ns_ = next_state_ns_ = 0;
   last_heard_ns_ = mono_now_ns();
   std::array<std::uint8_t, 1024> bytes{};
   while (!stopping_) {
@@ -122,10 +137,7 @@ Status SyncBoard::converse(SyncLink& link) {
                         frame.version, SYNC_PROTOCOL_VERSION));
       }
     }
-    if (to_configure_) {
-      const sync_configuration current = *std::exchange(to_configure_, std::nullopt);
-      if (Status sent = configure(link, current); !sent) return sent;
-    }
+    if (Status sent = configure(link); !sent) return sent;
     if (received_ns - last_heard_ns_ > kSilentNs)
       return Error{ErrorKind::failed, "the board is silent; is it powered, is it a Lightwell board?"};
   }
@@ -145,8 +157,7 @@ Status SyncBoard::send_due(SyncLink& link) {
     if (Status sent = send(link, message_of(SYNC_HELLO_REQUEST)); !sent) return sent;
   }
   if (!agreed_) return {};
-  if (Status sent = take_next_trigger(link); !sent) return sent;
-  if (!told_ && now_ns >= next_question_ns_) {
+  if (!has_ && now_ns >= next_question_ns_) {
     next_question_ns_ = now_ns + kHelloNs;
     if (Status sent = send(link, message_of(SYNC_CONFIGURATION_REQUEST)); !sent) return sent;
   }
@@ -166,23 +177,48 @@ Status SyncBoard::send_due(SyncLink& link) {
 }
 
 // The board's settings with what was asked for in them: the camera that it feeds on, and the trigger.
-Status SyncBoard::configure(SyncLink& link, const sync_configuration& current) {
-  sync_message message = message_of(SYNC_CONFIGURE);
-  sync_configuration& c = message.configuration;
-  c = current;
+sync_configuration SyncBoard::wanted() const {
+  sync_configuration c = *has_;
   c.camera_on = 1;
   c.store = 0;  // the host says it at every start; flash wears
-  if (!trigger_) return send(link, message);
-  const BoardOptions::Trigger& wanted = *trigger_;
+  if (!trigger_) return c;
+  const BoardOptions::Trigger& asked = *trigger_;
   c.trigger_on = 1;
-  c.rate_numerator = wanted.rate_numerator;
-  c.rate_denominator = wanted.rate_denominator;
-  if (wanted.pulse_ns > 0) c.pulse_ns = wanted.pulse_ns;
-  if (wanted.exposure_ns > 0) c.exposure_ns = wanted.exposure_ns;
-  c.reference = static_cast<std::uint8_t>(wanted.reference);
-  c.reference_numerator = wanted.reference_numerator;
-  c.reference_denominator = wanted.reference_denominator;
+  c.rate_numerator = asked.rate_numerator;
+  c.rate_denominator = asked.rate_denominator;
+  if (asked.pulse_ns > 0) c.pulse_ns = asked.pulse_ns;
+  if (asked.exposure_ns > 0) c.exposure_ns = asked.exposure_ns;
+  c.reference = static_cast<std::uint8_t>(asked.reference);
+  c.reference_numerator = asked.reference_numerator;
+  c.reference_denominator = asked.reference_denominator;
+  return c;
+}
+
+// Until the board has what is wanted, or refuses it; and again when it has gone back to safe defaults by itself, having
+// heard nothing of us for a while: a daemon that was stopped, a machine that slept.
+Status SyncBoard::configure(SyncLink& link) {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (next_trigger_) trigger_ = std::exchange(next_trigger_, std::nullopt), next_question_ns_ = 0;
+  }
+  const std::int64_t now_ns = mono_now_ns();
+  if (!agreed_ || !has_ || now_ns < next_question_ns_) return {};
+  const sync_configuration want = wanted();
+  if (same(want, *has_) && !safe_) return {};
+  if (refused_ && same(want, *refused_)) return {};
+  next_question_ns_ = now_ns + kHelloNs;
+  asked_ = want;
+  sync_message message = message_of(SYNC_CONFIGURE);
+  message.configuration = want;
   return send(link, message);
+}
+
+void SyncBoard::forget_configuration() {
+  has_.reset();
+  asked_.reset();
+  refused_.reset();
+  safe_ = false;
+  next_question_ns_ = 0;
 }
 
 void SyncBoard::set_trigger(double rate_hz, double exposure_us) {
@@ -202,21 +238,11 @@ void SyncBoard::set_trigger(double rate_hz, double exposure_us) {
   next_trigger_ = next;
 }
 
-Status SyncBoard::take_next_trigger(SyncLink& link) {
-  std::optional<sync_configuration> current;
-  {
-    const std::scoped_lock lock(mutex_);
-    if (!next_trigger_) return {};
-    trigger_ = std::exchange(next_trigger_, std::nullopt);
-    current = view_.configuration;
-  }
-  return current ? configure(link, *current) : Status();  // else when it has told its own
-}
-
 // The board has started again: it may be another firmware, and has forgotten what it was told.
 void SyncBoard::begin_anew() {
-  agreed_ = told_ = false;
-  next_hello_ns_ = next_question_ns_ = 0;
+  agreed_ = false;
+  next_hello_ns_ = 0;
+  forget_configuration();
   clock_.reset();
   last_sequence_.reset();
   const std::scoped_lock lock(mutex_);
@@ -260,7 +286,9 @@ void SyncBoard::take(const sync_message& message, std::int64_t received_mono_ns)
     clock_.add({static_cast<std::int64_t>(message.pong.t_host_ns),
                 static_cast<std::int64_t>(message.pong.t_received_board_ns),
                 static_cast<std::int64_t>(message.pong.t_sent_board_ns), received_mono_ns});
-  if (message.type == SYNC_CONFIGURATION) told_ = true;
+  if (message.type == SYNC_CONFIGURATION) has_ = message.configuration, safe_ = false, next_question_ns_ = 0;
+  if (message.type == SYNC_STATUS) safe_ = message.status.safe != 0;
+  if (message.type == SYNC_FAULT && message.fault.type == SYNC_CONFIGURE) refused_ = asked_;
   if (message.type == SYNC_STROBE) take_strobe(message.strobe);
   if (message.type == SYNC_TIMECODE) take_timecode(message.timecode);
   if (message.type == SYNC_BUTTON && options_.on_button)
@@ -275,8 +303,8 @@ void SyncBoard::take(const sync_message& message, std::int64_t received_mono_ns)
       view_.drift_ppm = clock_.drift_ppm();
       break;
     case SYNC_CONFIGURATION:
-      if (!view_.configuration) to_configure_ = message.configuration;
       view_.configuration = message.configuration;
+      if (asked_ && same(*asked_, message.configuration)) view_.refused.clear();
       break;
     case SYNC_STATUS:
       view_.status = message.status;

@@ -67,8 +67,9 @@ class SyncBoard {
   void take_strobe(const sync_strobe& strobe);
   void take_timecode(const sync_timecode& timecode);
   void begin_anew();
-  Status configure(SyncLink& link, const sync_configuration& current);
-  Status take_next_trigger(SyncLink& link);
+  [[nodiscard]] sync_configuration wanted() const;
+  Status configure(SyncLink& link);
+  void forget_configuration();
   void set_state(BoardState state, const std::string& description);
 
   BoardOptions options_;
@@ -88,8 +89,9 @@ class SyncBoard {
   std::uint64_t last_board_ns_ = 0;
   bool connected_before_ = false;
   bool agreed_ = false;  // HELLO with our schema
-  bool told_ = false;    // its configuration
-  std::optional<sync_configuration> to_configure_;
+  std::optional<sync_configuration> has_, asked_,
+      refused_;        // the board's; the last CONFIGURE; what a FAULT answered
+  bool safe_ = false;  // it went back to safe defaults by itself
 
   std::optional<BoardOptions::Trigger> trigger_;  // the latest wanted
   mutable std::mutex mutex_;                      // guards view_ and next_trigger_

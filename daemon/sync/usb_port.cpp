@@ -44,15 +44,15 @@ std::optional<UsbBoardInterface> board_interface(libusb_device* device) {
   return found;
 }
 
-std::string serial_of(libusb_device* device, libusb_device_handle* handle) {
+Result<std::string> serial_of(libusb_device* device, libusb_device_handle* handle) {
   libusb_device_descriptor descriptor{};
   libusb_get_device_descriptor(device, &descriptor);
-  const std::uint8_t index = descriptor.iSerialNumber;
+  if (descriptor.iSerialNumber == 0) return std::string();
   std::array<unsigned char, 128> text{};
-  const int size = index == 0 ? 0
-                              : libusb_get_string_descriptor_ascii(handle, index, text.data(),
-                                                                   static_cast<int>(text.size()));
-  return {reinterpret_cast<const char*>(text.data()), static_cast<std::size_t>(std::max(size, 0))};
+  const int size = libusb_get_string_descriptor_ascii(handle, descriptor.iSerialNumber, text.data(),
+                                                      static_cast<int>(text.size()));
+  if (size < 0) return usb_error("reading its serial number", size);
+  return std::string(reinterpret_cast<const char*>(text.data()), static_cast<std::size_t>(size));
 }
 
 class UsbPort final : public SyncPort {
@@ -106,7 +106,11 @@ Result<std::unique_ptr<SyncLink>> UsbPort::open_device(libusb_device* device,
     return usb_error(
         code == LIBUSB_ERROR_ACCESS ? "no right to use it; a udev rule must give it" : "opening it", code);
   UsbHandle handle(opened);
-  if (!serial_.empty() && serial_of(device, opened) != serial_) return std::unique_ptr<SyncLink>();
+  if (!serial_.empty()) {
+    const auto serial = serial_of(device, opened);
+    if (!serial) return serial.error();  // it may be the one: another try
+    if (*serial != serial_) return std::unique_ptr<SyncLink>();
+  }
   if (const int code = libusb_claim_interface(opened, board.number); code != 0)
     return usb_error(code == LIBUSB_ERROR_BUSY ? "another program uses it" : "claiming it", code);
   auto link = std::make_unique<UsbLink>(context_, std::move(handle), board);

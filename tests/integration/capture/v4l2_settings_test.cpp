@@ -199,7 +199,7 @@ TEST_F(V4l2Settings, ExposureIsChangedWhileFramesComeAndFramesUnderWayAreLeftOut
   ASSERT_TRUE(deliver());
   ASSERT_TRUE(next());
   const std::uint64_t skipped = source_->counters().skipped;
-  ASSERT_TRUE(source_->set_exposure_us(7000));
+  ASSERT_EQ(source_->set_exposure_us(7000), ExposureChange::asked);
   EXPECT_TRUE(eventually([&] {
     device_->deliver();
     const FrameLease lease = source_->wait(50ms);
@@ -207,7 +207,7 @@ TEST_F(V4l2Settings, ExposureIsChangedWhileFramesComeAndFramesUnderWayAreLeftOut
   }));
   EXPECT_GE(source_->counters().skipped, skipped + 3);
   // Out of range: said, and the frames go on as they were.
-  ASSERT_TRUE(source_->set_exposure_us(1e12));
+  ASSERT_EQ(source_->set_exposure_us(1e12), ExposureChange::asked);
   for (int i = 0; i < 10; ++i) {
     ASSERT_TRUE(deliver());
     const FrameLease lease = source_->wait(50ms);

@@ -5,12 +5,14 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <thread>
 
 #include "interface/http_client.h"
 #include "interface/recording.h"
@@ -229,8 +231,51 @@ TEST_F(DaemonAndBoard, LampsMoveTriggerAndExposure) {
   const double frames = 90 / avoiding["rate_hz"].get<double>();
   EXPECT_TRUE(std::abs(ripples - std::round(ripples)) < 0.01 || std::abs(frames - std::round(frames)) < 0.01)
       << avoiding;
-  EXPECT_TRUE(eventually([&] { return status()["source_description"].get<std::string>().size() > 0; }));
+  EXPECT_TRUE(eventually([&] {
+    return std::abs(board()["trigger"]["rate_hz"].get<double>() - avoiding["rate_hz"].get<double>()) < 0.01;
+  })) << board();
+  HttpRequest record;
+  record.method = "POST";
+  record.path = "/api/v1/record";
+  record.body = R"({"action": "start", "file": "avoided.mkv"})";
+  ASSERT_EQ(http_request(http_, record)->status, 200);
+  ASSERT_TRUE(eventually([&] { return status()["recording"]["frames"] > 2; })) << status();
+  record.body = R"({"action": "stop"})";
+  ASSERT_EQ(http_request(http_, record)->status, 200);
+  const auto take = RecordingReader::open(folder_.path() / "avoided.mkv");
+  ASSERT_TRUE(take);
+  EXPECT_NEAR((*(*take)->skip())->exposure_us / avoiding["exposure_us"].get<double>(), 1, 0.02);
   EXPECT_EQ(board()["refused"], "");
+}
+
+// The firmware stops triggers after 5 s without a word from its host.
+TEST_F(DaemonAndBoard, ADaemonThatWasStoppedForAWhileTriggersAgain) {
+  const std::string terminal = start_board({});
+  start_daemon("address = \"serial:" + terminal + "\"\ntrigger_rate = \"50\"\n");
+  const auto triggers = [&] {
+    return board()["trigger"].is_object() ? board()["trigger"]["triggers"].get<int>() : 0;
+  };
+  ASSERT_TRUE(eventually([&] { return triggers() > 50; })) << status();
+  daemon_->send(SIGSTOP);
+  std::this_thread::sleep_for(std::chrono::seconds(7));
+  daemon_->send(SIGCONT);
+  const int before = triggers();
+  EXPECT_TRUE(eventually([&] {
+    return triggers() > before + 100 && board()["trigger"]["safe_defaults"] == false;
+  })) << board();
+}
+
+TEST_F(DaemonAndBoard, AReloadThatReadsWhatIsNoCalibrationLeavesTheDaemonAlive) {
+  start_daemon("");
+  const auto config = folder_.path() / "lightwell.toml";
+  std::filesystem::create_directory(folder_.path() / "cal");
+  std::ofstream(folder_.path() / "cal" / "flat_notes.json") << "[]";
+  std::ofstream(config, std::ios::app)
+      << "[calibration]\ndirectory = \"" << (folder_.path() / "cal").string() << "\"\n";
+  daemon_->send(SIGHUP);
+  ASSERT_TRUE(daemon_->wait_for_line("configuration not reloaded"));
+  EXPECT_TRUE(status().is_object());
+  EXPECT_TRUE(daemon_->running());
 }
 
 TEST_F(DaemonAndBoard, APhotodiodeThatSeesOtherLightThanTheCameraIsAnAlarm) {

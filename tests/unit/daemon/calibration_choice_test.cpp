@@ -123,6 +123,14 @@ TEST_F(CalibrationChoices, APatternThatCannotBeReadIsNamedAndTheOneInUseStays) {
   EXPECT_EQ(choice.current().flat.offset_codes[0], 1);
 }
 
+TEST_F(CalibrationChoices, WhatIsNoPatternIsNamed) {
+  std::ofstream(folder_.path() / "flat_notes.json") << "[]";
+  const auto refused = flats_by_temperature(folder_.path());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::bad_input);
+  EXPECT_NE(refused.error().message.find("flat_notes.json"), std::string::npos);
+}
+
 TEST_F(CalibrationChoices, TwoPatternsOfOneTemperatureAreRefused) {
   write_flat("flat.json", 1, {{"temperature_c", 20.0}});
   write_flat("flat_b.json", 2, {{"temperature_c", 20.05}});

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 namespace lightwell {
 namespace {
 
@@ -53,6 +55,28 @@ TEST_F(FlickerFollowers, AnotherLampIsMetFromTheSettingsThatWereWanted) {
   const auto next = follower_.consider(lamp(120, 25, 8333), 30 * kS);
   ASSERT_TRUE(next);
   EXPECT_EQ(*next, (TriggerChoice{25, 8333}));
+}
+
+// Two lamps of one depth, one of which breathes: which is the deeper changes from measurement to measurement.
+TEST_F(FlickerFollowers, LampsThatChangePlacesAreTheSameLamps) {
+  sync_photodiode first = lamp(100, 24, 10000);
+  first.frequencies = 2;
+  first.frequency_mhz[1] = 120'010;
+  first.depth_ppm[1] = 298'000;
+  ASSERT_TRUE(follower_.consider(first, 10 * kS));
+  sync_photodiode second = first;
+  std::swap(second.frequency_mhz[0], second.frequency_mhz[1]);
+  for (int s = 20; s < 600; s += 2)
+    EXPECT_FALSE(follower_.consider(s % 4 == 0 ? first : second, s * kS)) << s;
+  // One that outshines both is another light.
+  sync_photodiode third = first;
+  third.frequencies = 3;
+  third.frequency_mhz[2] = 90'000;
+  third.depth_ppm[2] = 290'000;
+  EXPECT_FALSE(follower_.consider(third, 700 * kS));
+  third.depth_ppm[2] = 600'000;
+  EXPECT_TRUE(follower_.consider(third, 702 * kS));
+  EXPECT_FALSE(follower_.follows());
 }
 
 TEST_F(FlickerFollowers, NoAdviceNoLampAClippedReadingOrNothingToGainChangeNothing) {

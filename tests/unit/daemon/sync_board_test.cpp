@@ -29,6 +29,7 @@ class ScriptedBoard {
     bool silent = false;
     std::uint32_t schema = SYNC_SCHEMA_HASH;
     std::uint8_t version = SYNC_PROTOCOL_VERSION;
+    int lose_configures = 0;  // so many do not arrive
   };
 
   // What the board has sent and the host has not read.
@@ -80,6 +81,10 @@ class ScriptedBoard {
   sync_configuration configuration() {
     const std::scoped_lock lock(mutex_);
     return configuration_;
+  }
+  int configures() {
+    const std::scoped_lock lock(mutex_);
+    return configures_;
   }
   std::uint8_t host_state() {
     const std::scoped_lock lock(mutex_);
@@ -135,7 +140,12 @@ class ScriptedBoard {
         reply.pong = {message.ping.t_host_ns, board_ns(mono_now_ns()), board_ns(mono_now_ns())};
         break;
       case SYNC_CONFIGURE:
-        if (message.configuration.rate_numerator > 1000) {
+        ++configures_;
+        if (behaviour_.lose_configures > 0) {
+          --behaviour_.lose_configures;
+          return;
+        }
+        if (message.configuration.rate_numerator > 1000 * message.configuration.rate_denominator) {
           reply.type = SYNC_FAULT;
           reply.fault = {SYNC_FAULT_RANGE, SYNC_CONFIGURE, 0, 1, 1000};
           break;
@@ -163,6 +173,7 @@ class ScriptedBoard {
   std::int64_t start_ns_ = mono_now_ns();
   sync_configuration configuration_{};
   std::uint8_t host_state_ = 255;
+  int configures_ = 0;
 };
 
 class ScriptedLink final : public SyncLink {
@@ -260,6 +271,51 @@ TEST_F(SyncBoards, TheConfiguredTriggerIsSentWithWhatTheBoardHas) {
   EXPECT_TRUE(eventually([&] { return board.view().reconnects >= 1; }));
 }
 
+TEST_F(SyncBoards, ALostConfigurationIsSaidAgainUntilTheBoardHasIt) {
+  BoardOptions with = options();
+  with.trigger = BoardOptions::Trigger{};
+  with.trigger->rate_numerator = 24;
+  ScriptedBoard::Behaviour lossy;
+  lossy.lose_configures = 2;
+  there_.behave(lossy);
+  SyncBoard board(with, strobes_, timecodes_);
+  ASSERT_TRUE(eventually([&] { return there_.configuration().trigger_on == 1; }));
+  EXPECT_EQ(there_.configuration().rate_numerator, 24u);
+  std::this_thread::sleep_for(milliseconds(1200));
+  EXPECT_EQ(there_.configures(), 3) << "and no more once it has it";
+}
+
+// The firmware stops triggers when it has heard nothing for its heartbeat: a daemon that was stopped, a machine that slept.
+TEST_F(SyncBoards, ABoardThatWentBackToSafeDefaultsIsConfiguredAnew) {
+  BoardOptions with = options();
+  with.trigger = BoardOptions::Trigger{};
+  there_.behave({});
+  SyncBoard board(with, strobes_, timecodes_);
+  ASSERT_TRUE(eventually([&] { return there_.configuration().trigger_on == 1; }));
+  const int before = there_.configures();
+  sync_message status{};
+  status.type = SYNC_STATUS;
+  status.status.safe = 1;
+  there_.say(status);
+  EXPECT_TRUE(eventually([&] { return there_.configures() > before; }));
+}
+
+TEST_F(SyncBoards, AnotherTriggerIsToldAndARefusedOneIsNotRepeated) {
+  BoardOptions with = options();
+  with.trigger = BoardOptions::Trigger{};
+  there_.behave({});
+  SyncBoard board(with, strobes_, timecodes_);
+  ASSERT_TRUE(eventually([&] { return there_.configuration().trigger_on == 1; }));
+  board.set_trigger(24.5, 9000);
+  ASSERT_TRUE(eventually([&] { return there_.configuration().rate_numerator == 24'500; }));
+  EXPECT_EQ(there_.configuration().rate_denominator, 1000u);
+  EXPECT_EQ(there_.configuration().exposure_ns, 9'000'000u);
+  board.set_trigger(25, 8000);
+  ASSERT_TRUE(eventually([&] { return there_.configuration().rate_numerator == 25; }))
+      << "the exact one again";
+  EXPECT_EQ(there_.configuration().rate_denominator, 1u);
+}
+
 TEST_F(SyncBoards, WhatItRefusesIsSaidByFieldAndRange) {
   BoardOptions with = options();
   with.trigger = BoardOptions::Trigger{};
@@ -268,6 +324,8 @@ TEST_F(SyncBoards, WhatItRefusesIsSaidByFieldAndRange) {
   ASSERT_TRUE(eventually([&] { return !board.view().refused.empty(); }));
   EXPECT_NE(board.view().refused.find("rate_numerator: allowed 1 to 1000"), std::string::npos)
       << board.view().refused;
+  std::this_thread::sleep_for(milliseconds(1200));
+  EXPECT_EQ(there_.configures(), 1) << "it would be refused again";
 }
 
 TEST_F(SyncBoards, ABoardThatGoesIsFoundAgainWithinTwoSeconds) {
@@ -299,6 +357,15 @@ TEST_F(SyncBoards, OtherFirmwareIsNamedAndNotSpokenTo) {
   EXPECT_EQ(there_.configuration().trigger_on, 0);
   there_.behave({true, false, SYNC_SCHEMA_HASH, 1});
   ASSERT_TRUE(eventually([&] { return board.view().description.find("version 1 ") != std::string::npos; }))
+      << board.view().description;
+}
+
+TEST_F(SyncBoards, OtherFirmwareThatIsUnpluggedIsNoDevice) {
+  there_.behave({true, false, 0x12345678});
+  SyncBoard board(options(), strobes_, timecodes_);
+  ASSERT_TRUE(eventually([&] { return board.view().state == BoardState::wrong_firmware; }));
+  there_.behave({false});
+  EXPECT_TRUE(eventually([&] { return board.view().state == BoardState::no_device; }))
       << board.view().description;
 }
 

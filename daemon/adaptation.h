@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <mutex>
 #include <optional>
-#include <string>
 
 #include "daemon/calibration_choice.h"
 #include "daemon/pipeline/pipeline.h"
@@ -16,10 +15,10 @@
 
 namespace lightwell {
 
-// What the daemon does with what the sync board says, about once a second and never on the frame path: gravity turns the
-// world upright, temperature picks the fixed pattern, lamps move trigger and exposure, the photodiode vouches for the
-// scale. While a take is written nothing of it changes: a take has one calibration.
-class BoardUse {
+// What the daemon adapts to, about once a second and never on the frame path: gravity turns the world upright, temperature
+// picks the fixed pattern, lamps move trigger and exposure, the photodiode vouches for the scale. While a take is written
+// nothing of it changes: a take has one calibration.
+class Adaptation {
  public:
   struct Options {
     CalibrationChoice calibration;
@@ -27,10 +26,11 @@ class BoardUse {
     std::optional<TriggerChoice> trigger;
     bool avoid_flicker = false;  // may depart from it where lamps beat with it
   };
-  BoardUse(SyncBoard& board, Pipeline& pipeline, SnapshotChannel& snapshots, Options options);
+  // board: null where there is none; the temperature of the camera's own sensor is then all there is.
+  Adaptation(SyncBoard* board, Pipeline& pipeline, SnapshotChannel& snapshots, Options options);
 
-  // After a reload. The thread that calls turn.
-  void use(Options options);
+  // After a reload; trigger and exposure go back to what is asked for. The thread that calls turn.
+  void use(Options options, bool same_source);
   // The calibration to develop frames with from now on; empty: the one in use stays.
   std::optional<Calibration> turn(bool recording);
 
@@ -40,14 +40,23 @@ class BoardUse {
  private:
   void compare_with_photodiode(const BoardView& board, const Snapshot& newest);
   void follow_flicker(const BoardView& board, const Snapshot& newest);
+  void change_to(const TriggerChoice& choice);
+  void finish_change(const Snapshot& newest);
+  void give_up(const TriggerChoice& choice, const char* why);
   [[nodiscard]] std::optional<Calibration> choose_calibration(const BoardView& board, const Snapshot& newest);
-  void publish_view();
+  void publish_view(bool connected);
 
-  SyncBoard& board_;
+  SyncBoard* board_;
   Pipeline& pipeline_;
   SnapshotChannel& snapshots_;
   Options options_;
   std::optional<FlickerFollower> follower_;
+  struct Change {
+    TriggerChoice to;
+    std::int64_t asked_mono_ns = 0;
+  };
+  std::optional<Change>
+      change_;  // the camera was asked for its exposure; the board follows when frames have it
   PhotodiodeCheck photodiode_;
   std::uint64_t last_photodiode_board_ns_ = 0;
 
