@@ -50,6 +50,7 @@ if(monocypher AND LIGHTWELL_OPENSSL)
   set(key "${LIGHTWELL_SYNC_KEY}")
   if(NOT key)
     set(key "${CMAKE_BINARY_DIR}/test-key.pem")
+    message(NOTICE "The boards of this build take updates signed with ${key} alone, for tests: LIGHTWELL_SYNC_KEY names a key to keep")
     if(NOT EXISTS "${key}")
       execute_process(COMMAND "${LIGHTWELL_OPENSSL}" genpkey -algorithm ed25519 -out "${key}" COMMAND_ERROR_IS_FATAL ANY)
     endif()
@@ -72,6 +73,18 @@ foreach(name lightwell-boot-f405 lightwell-sync-f405-a lightwell-sync-f405-b)
   target_include_directories(${name} SYSTEM PRIVATE freestanding port/f405/usb "${tinyusb}" "${monocypher}"
                              "${monocypher}/optional")
 endforeach()
+
+# What goes with every copy of an image.
+set(notices "${CMAKE_BINARY_DIR}/THIRD-PARTY.txt")
+file(WRITE "${notices}" "The sync board's images contain these programs.\n")
+if(tinyusb)
+  file(READ "${tinyusb}/../LICENSE" licence)
+  file(APPEND "${notices}" "\nTinyUSB\n\n${licence}")
+endif()
+if(monocypher)
+  file(READ "${monocypher}/../LICENCE.md" licence)
+  file(APPEND "${notices}" "\nMonocypher\n\n${licence}")
+endif()
 
 # The images, signed: for `lightwell board update`, and for a programmer.
 if(monocypher AND LIGHTWELL_OPENSSL)
