@@ -76,6 +76,7 @@ const std::vector<Suite>& suites();
 std::vector<Row> frame_suite(const Options& options);
 std::vector<Row> fit_suite(const Options& options);
 std::vector<Figure> fit_figures(const std::vector<Row>& rows);
+std::vector<Row> field_suite(const Options& options);
 std::vector<Row> lens_suite(const Options& options);
 std::vector<Row> response_suite(const Options& options);
 

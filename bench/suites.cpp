@@ -50,6 +50,7 @@ const std::vector<Suite>& suites() {
       {"frame", frame_suite},
       {"lights", lights_rows, curve_figures},
       {"fit", fit_suite, fit_figures},
+      {"field", field_suite},
       {"lens", lens_suite},
       {"response", response_suite},
       {"render", render_suite, render_figures},
