@@ -111,6 +111,8 @@ std::string status_table(const std::string& status_json) {
   row("latency", quantiles(s.at("latency_ms")));
   const std::string verdict = text(s.at("calibration_verdict"));
   row("calibration", text(s.at("calibration_id")) + (verdict.empty() ? "" : ": " + verdict));
+  if (const json board = s.value("board", json()); board.is_object() && board.value("state", "off") != "off")
+    row("sync board", text(board.at("state")) + ": " + text(board.at("description")));
   row("recording", recording(s.at("recording")));
   row("up", number(s.at("uptime_s"), 0) + " s, version " + text(s.at("version")));
   const std::string alarm = text(s.at("alarm"));

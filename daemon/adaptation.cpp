@@ -28,9 +28,24 @@ std::optional<Vec3d> up_at_rest(const BoardView& board) {
 }  // namespace
 
 Adaptation::Adaptation(SyncBoard* board, Pipeline& pipeline, SnapshotChannel& snapshots, Options options)
-    : board_(board), pipeline_(pipeline), snapshots_(snapshots), options_(std::move(options)) {}
+    : board_(board), pipeline_(pipeline), snapshots_(snapshots), options_(std::move(options)) {
+  asked_trigger_ = options_.trigger;
+  asked_avoid_ = options_.avoid_flicker;
+}
+
+const Calibration& Adaptation::adapted(const Calibration& base) const {
+  return base.id == options_.calibration.base_id() ? options_.calibration.current() : base;
+}
 
 void Adaptation::use(Options options, bool same_source) {
+  if (options.calibration.base_id() == options_.calibration.base_id())
+    options.calibration = std::move(options_.calibration);
+  if (same_source && options.trigger == asked_trigger_ && options.avoid_flicker == asked_avoid_) {
+    options_.calibration = std::move(options.calibration);
+    return;
+  }
+  asked_trigger_ = options.trigger;
+  asked_avoid_ = options.avoid_flicker;
   const bool moved = change_ || (follower_ && follower_->follows());
   // What the frames once said was the camera's own; what they say now may be ours.
   if (same_source && options.trigger && options_.trigger && options.trigger->exposure_us <= 0)
@@ -95,13 +110,14 @@ void Adaptation::follow_flicker(const BoardView& board, const Snapshot& newest) 
   if (!options_.avoid_flicker) return;
   if (change_) return finish_change(newest);
   if (!follower_) follower_.emplace(*wanted);
-  if (const auto choice = follower_->consider(*board.photodiode, mono_now_ns())) change_to(*choice);
+  if (const auto choice = follower_->consider(*board.photodiode, mono_now_ns()))
+    change_to(*choice, board.photodiode->beat_ppm * 1e-6);
 }
 
-void Adaptation::change_to(const TriggerChoice& choice) {
+void Adaptation::change_to(const TriggerChoice& choice, double beat) {
   switch (pipeline_.view().source->set_exposure_us(choice.exposure_us)) {
     case ExposureChange::asked:
-      change_ = Change{choice, mono_now_ns()};
+      change_ = Change{choice, beat, mono_now_ns()};
       break;
     case ExposureChange::not_now:
       follower_.reset();  // it is considered again when there is a camera
@@ -115,11 +131,14 @@ void Adaptation::change_to(const TriggerChoice& choice) {
 // A trigger without its exposure beats as much as before: the board is told once frames have it.
 void Adaptation::finish_change(const Snapshot& newest) {
   const TriggerChoice to = change_->to;
+  const double beat = change_->beat;
   if (std::abs(newest.exposure_us - to.exposure_us) <= kSameExposure * to.exposure_us) {
     change_.reset();
     board_->set_trigger(to.rate_hz, to.exposure_us);
     spdlog::info("flicker: triggers of {:.6g} Hz, exposure {:.6g} us{}", to.rate_hz, newest.exposure_us,
-                 follower_->follows() ? " do not beat with the lamps" : ", as configured");
+                 follower_->follows()
+                     ? fmt::format(": {:.2g} % is left of the beat with the lamps", 100 * beat)
+                     : ", as configured");
   } else if (mono_now_ns() - change_->asked_mono_ns > kExposureWaitNs) {
     change_.reset();
     give_up(to, "the camera does not take that exposure");

@@ -29,8 +29,11 @@ class Adaptation {
   // board: null where there is none; the temperature of the camera's own sensor is then all there is.
   Adaptation(SyncBoard* board, Pipeline& pipeline, SnapshotChannel& snapshots, Options options);
 
-  // After a reload; trigger and exposure go back to what is asked for. The thread that calls turn.
+  // After a reload. What is asked for as before stays as it has been adapted; else trigger and exposure go back to what is
+  // asked for. The thread that calls turn.
   void use(Options options, bool same_source);
+  // What a reload to this calibration develops frames with: as adapted, where it is the same.
+  [[nodiscard]] const Calibration& adapted(const Calibration& base) const;
   // The calibration to develop frames with from now on; empty: the one in use stays.
   std::optional<Calibration> turn(bool recording);
 
@@ -40,7 +43,7 @@ class Adaptation {
  private:
   void compare_with_photodiode(const BoardView& board, const Snapshot& newest);
   void follow_flicker(const BoardView& board, const Snapshot& newest);
-  void change_to(const TriggerChoice& choice);
+  void change_to(const TriggerChoice& choice, double beat);
   void finish_change(const Snapshot& newest);
   void give_up(const TriggerChoice& choice, const char* why);
   [[nodiscard]] std::optional<Calibration> choose_calibration(const BoardView& board, const Snapshot& newest);
@@ -50,9 +53,12 @@ class Adaptation {
   Pipeline& pipeline_;
   SnapshotChannel& snapshots_;
   Options options_;
+  std::optional<TriggerChoice> asked_trigger_;  // as the configuration has it
+  bool asked_avoid_ = false;
   std::optional<FlickerFollower> follower_;
   struct Change {
     TriggerChoice to;
+    double beat = 0;  // what is left of it, relative
     std::int64_t asked_mono_ns = 0;
   };
   std::optional<Change>

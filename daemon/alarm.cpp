@@ -9,6 +9,8 @@ namespace {
 
 // Light this old is no longer the light on set: longer than the slowest camera's frame, shorter than patience.
 constexpr double kStaleMs = 1000;
+constexpr double kOpeningS = 5;  // what takes longer does not open
+constexpr double kAcquiringS = 5, kHoldoverS = 2;
 
 }  // namespace
 
@@ -20,6 +22,9 @@ std::string alarm_for(const DaemonStatus& status) {
     case SourceState::wrong_format:
       return fmt::format("Camera: {} ({})", name(status.source_state), status.source_description);
     case SourceState::opening:
+      if ((status.published > 0 ? status.frame_age_ms * 1e-3 : status.uptime_s) > kOpeningS)
+        return fmt::format("Camera: {} ({})", name(status.source_state), status.source_description);
+      break;
     case SourceState::streaming:
     case SourceState::ended:
       break;
@@ -33,6 +38,14 @@ std::string alarm_for(const DaemonStatus& status) {
     return "Sync board: it refuses what it was told: " + status.board.refused;
   if (status.board.status && status.board.status->safe != 0)
     return "Sync board: it went back to safe defaults, as the daemon was silent";
+  if (status.board.acquiring_s > kAcquiringS)
+    return fmt::format(
+        "Sync board: no lock on its reference for {:.0f} s; is it plugged in, is reference_rate its rate?",
+        status.board.acquiring_s);
+  if (const auto& board = status.board.status;
+      board && board->lock == SYNC_LOCK_HOLDOVER && board->holdover_s > kHoldoverS)
+    return fmt::format("Sync board: its reference is lost since {} s; its last rate goes on",
+                       board->holdover_s);
   if (const auto& scale = status.board.photodiode_check; scale && scale->differs)
     return fmt::format(
         "Scale: camera and photodiode differ by a factor of {:.2f} ({:.0f} and {:.0f} lx); is the dome "

@@ -35,21 +35,24 @@ Result<Eigen::Matrix3d> camera_from_board(const std::string& text) {
     if (row == 3 || part.size() != 1 || part[0] < 'x' || part[0] > 'z') return refused;
     rotation(row, part[0] - 'x') = negative ? -1 : 1;
   }
-  if (row != 3 || std::abs(rotation.determinant() - 1) > 0.5) return refused;
+  if (row != 3 || text.back() == ',' || std::abs(rotation.determinant() - 1) > 0.5) return refused;
   return rotation;
 }
 
 CalibrationChoice::CalibrationChoice(Calibration base, std::vector<FlatAtTemperature> flats,
                                      std::optional<Eigen::Matrix3d> rotation)
-    : current_(std::move(base)), flats_(std::move(flats)), rotation_(std::move(rotation)) {}
+    : current_(std::move(base)),
+      flats_(std::move(flats)),
+      rotation_(std::move(rotation)),
+      base_id_(current_.id) {}
 
 double CalibrationChoice::tilt_deg() const {
   return angle_deg(current_.lens.zenith, Vec3d::UnitZ());
 }
 
 // What is wrong stays wrong for a while: it is said when it begins.
-Result<bool> CalibrationChoice::once(const Error& error) {
-  if (std::exchange(said_, error.message) == error.message) return false;
+Result<bool> CalibrationChoice::once(const Error& error, bool& said) {
+  if (std::exchange(said, true)) return false;
   return error;
 }
 
@@ -59,7 +62,8 @@ Result<bool> CalibrationChoice::turn(const std::optional<Vec3d>& up_board) {
     return false;
   }
   const auto zenith = zenith_from_accelerometer(*rotation_ * *up_board);
-  if (!zenith) return once(zenith.error());
+  if (!zenith) return once(zenith.error(), said_turn_);
+  said_turn_ = false;
   const bool rests = last_zenith_ && angle_deg(*last_zenith_, *zenith) < kRestDeg;
   last_zenith_ = *zenith;
   if (!rests || angle_deg(current_.lens.zenith, *zenith) < kTurnDeg) return false;
@@ -75,9 +79,10 @@ Result<bool> CalibrationChoice::pick_flat(const std::optional<double>& temperatu
     if (away(i) < away(nearest)) nearest = i;
   if (flat_ && (nearest == *flat_ || away(nearest) + kNearerC > away(*flat_))) return false;
   auto flat = read_flat_field(flats_[nearest].file);
-  if (!flat) return once(flat.error());
+  if (!flat) return once(flat.error(), said_flat_);
   if (const Status fits = check(*flat, current_.lens); !fits)
-    return once({fits.error().kind, flats_[nearest].file.string() + ": " + fits.error().message});
+    return once({fits.error().kind, flats_[nearest].file.string() + ": " + fits.error().message}, said_flat_);
+  said_flat_ = false;
   current_.flat = std::move(*flat);
   flat_ = nearest;
   return true;
@@ -86,10 +91,10 @@ Result<bool> CalibrationChoice::pick_flat(const std::optional<double>& temperatu
 Result<std::optional<Calibration>> CalibrationChoice::consider(const Circumstances& now) {
   const auto turned = turn(now.up_board);
   const auto picked = pick_flat(now.temperature_c);
-  if (!turned) return turned.error();
+  changed_ = changed_ || (turned && *turned) || (picked && *picked);
+  if (!turned) return turned.error();  // a change beside it is told next time
   if (!picked) return picked.error();
-  if (!*turned && !*picked) return std::optional<Calibration>();
-  said_.clear();
+  if (!std::exchange(changed_, false)) return std::optional<Calibration>();
   current_.id = calibration_id(current_);
   return std::optional(current_);
 }

@@ -37,6 +37,8 @@ class CalibrationChoice {
   // gravity that stands the camera on its head; said once, and what is in use stays.
   Result<std::optional<Calibration>> consider(const Circumstances& now);
   [[nodiscard]] const Calibration& current() const { return current_; }
+  // Of the calibration before any change.
+  [[nodiscard]] const std::string& base_id() const { return base_id_; }
   // Angle between the lens and the zenith.
   [[nodiscard]] double tilt_deg() const;
 
@@ -47,14 +49,16 @@ class CalibrationChoice {
  private:
   [[nodiscard]] Result<bool> turn(const std::optional<Vec3d>& up_board);
   [[nodiscard]] Result<bool> pick_flat(const std::optional<double>& temperature_c);
-  Result<bool> once(const Error& error);
+  static Result<bool> once(const Error& error, bool& said);
 
   Calibration current_;
   std::vector<FlatAtTemperature> flats_;
   std::optional<std::size_t> flat_;  // in use; empty: the folder's own
   std::optional<Eigen::Matrix3d> rotation_;
   std::optional<Vec3d> last_zenith_;
-  std::string said_;
+  std::string base_id_;
+  bool changed_ = false;  // since the last answer
+  bool said_turn_ = false, said_flat_ = false;
 };
 
 }  // namespace lightwell

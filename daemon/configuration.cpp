@@ -113,7 +113,7 @@ const std::vector<Key>& keys() {
            &C::source, &C::Source::trigger),
       boolean("source.ptp", "GenICam: let PTP (IEEE 1588) keep the camera's clock; false: as it is",
               &C::source, &C::Source::ptp),
-      integer("source.buffers", "frames the camera may fill ahead", &C::source, &C::Source::buffers, 3, 256),
+      integer("source.buffers", "frames the camera may fill ahead", &C::source, &C::Source::buffers, 4, 64),
       integer("source.packet_size", "GigE Vision packet in bytes; 1400 where jumbo frames do not pass",
               &C::source, &C::Source::packet_size, 576, 9000),
       integer("source.socket_buffer_bytes", "receive buffer; nearly a frame, capped by net.core.rmem_max",

@@ -177,14 +177,14 @@ Status Daemon::reload(const Configuration& wanted) {
     if (!made) return made.error();
     source = std::move(*made);
   }
+  const Calibration used = parts_->adaptation->adapted(*calibration);
   Status replaced = parts_->pipeline.replace(
-      std::move(source),
-      std::make_shared<FramePath>(*calibration, frame_path_options(wanted), parts_->snapshots));
+      std::move(source), std::make_shared<FramePath>(used, frame_path_options(wanted), parts_->snapshots));
   if (!replaced) return replaced;
   parts_->use_stampers(wanted.source.address);
   if (now.fit != wanted.fit) parts_->fits->set_options(fit_options(wanted));
   parts_->configuration = wanted;
-  parts_->calibration = *calibration;
+  parts_->calibration = used;
   parts_->adaptation->use(std::move(*use), !source_changed);
   return {};
 }

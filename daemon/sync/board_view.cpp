@@ -53,7 +53,9 @@ Timecode timecode_of(const sync_timecode& t) {
 }
 
 std::string fault_text(const sync_fault& fault) {
-  std::string text = fmt::format("message {:#04x}: {}", fault.type, fault_words(fault.code));
+  std::string text = fault.type == SYNC_CONFIGURE
+                         ? fmt::format("the whole configuration, for one value: {}", fault_words(fault.code))
+                         : fmt::format("message {:#04x}: {}", fault.type, fault_words(fault.code));
   sync_field_list fields{};
   if (fault.code == SYNC_FAULT_RANGE && sync_fields(fault.type, &fields) && fault.field < fields.count)
     text +=

@@ -30,6 +30,7 @@ struct BoardView {
   std::uint64_t lost_frames = 0;  // gaps in the board's sequence
   double clock_bound_us = 0;      // its clock is mapped to the host's at least so well
   double drift_ppm = 0;
+  double acquiring_s = 0;  // for so long a reference is set and not yet followed
   std::optional<sync_hello> hello;
   std::optional<sync_configuration> configuration;
   std::optional<sync_status> status;

@@ -3,6 +3,7 @@
 #include "daemon/sync/sync_board.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
@@ -28,6 +29,10 @@ sync_message message_of(sync_type type) {
   sync_message message{};
   message.type = static_cast<std::uint8_t>(type);
   return message;
+}
+
+bool is_request(std::uint8_t type) {
+  return type % 2 == 1 && type <= SYNC_UPDATE_FINISH;
 }
 
 // But for where it is kept.
@@ -57,6 +62,7 @@ SyncBoard::SyncBoard(BoardOptions options, StrobeRing& strobes, TimecodeStamper&
       timecodes_(timecodes),
       trigger_(options_.trigger) {
   set_state(BoardState::no_device, "not looked for yet");
+  started_ = true;
   thread_ = std::thread([this] { run(); });
 }
 
@@ -76,6 +82,12 @@ BoardView SyncBoard::view() const {
 
 // What another board, or none, does not say any more is forgotten.
 void SyncBoard::set_state(BoardState state, const std::string& description) {
+  if (started_) {  // what is so is logged once, not at every try
+    const std::string line = std::string(name(state)) + ": " + description;
+    if (std::exchange(logged_, line) != line)
+      spdlog::log(state == BoardState::connected ? spdlog::level::info : spdlog::level::warn,
+                  "sync board: {}", line);
+  }
   const std::scoped_lock lock(mutex_);
   const std::uint64_t reconnects = view_.reconnects, lost = view_.lost_frames;
   if (state != BoardState::connected) view_ = {};
@@ -120,9 +132,11 @@ Status SyncBoard::converse(SyncLink& link) {
     for (std::size_t i = 0; i < *size; ++i) {
       frame_view frame{};
       if (!frame_receive(&receiver_, bytes[i], &frame)) continue;
-      last_heard_ns_ = received_ns;
       sync_message message{};
-      if (frame_message(&frame, &message)) {
+      const bool understood = frame_message(&frame, &message);
+      if (understood && is_request(message.type)) continue;  // a line that echoes is no board
+      last_heard_ns_ = received_ns;
+      if (understood) {
         if (last_sequence_) {
           const auto gap = static_cast<std::uint16_t>(frame.sequence - *last_sequence_ - 1);
           const std::scoped_lock lock(mutex_);
@@ -261,6 +275,17 @@ void SyncBoard::take_timecode(const sync_timecode& timecode) {
   if (start && clock_.bound_us() < kGoodEnoughUs) timecodes_.word(timecode_of(timecode), *start);
 }
 
+// Under the view's lock.
+void SyncBoard::see_status(const sync_status& status) {
+  view_.status = status;
+  const bool acquiring = status.lock == SYNC_LOCK_ACQUIRING;
+  if (!acquiring) acquiring_since_ns_ = 0;
+  if (acquiring && acquiring_since_ns_ == 0) acquiring_since_ns_ = mono_now_ns();
+  view_.acquiring_s = acquiring ? static_cast<double>(mono_now_ns() - acquiring_since_ns_) * 1e-9 : 0;
+  constexpr std::uint64_t kWordNs = 2'000'000'000;  // without another the timecode has stopped
+  if (view_.timecode && status.t_board_ns > view_.timecode->t_board_ns + kWordNs) view_.timecode.reset();
+}
+
 void SyncBoard::take(const sync_message& message, std::int64_t received_mono_ns) {
   if (message.type == SYNC_HELLO) {
     if (message.hello.schema_hash != SYNC_SCHEMA_HASH) {
@@ -307,7 +332,7 @@ void SyncBoard::take(const sync_message& message, std::int64_t received_mono_ns)
       if (asked_ && same(*asked_, message.configuration)) view_.refused.clear();
       break;
     case SYNC_STATUS:
-      view_.status = message.status;
+      see_status(message.status);
       break;
     case SYNC_PHOTODIODE:
       view_.photodiode = message.photodiode;
@@ -324,6 +349,7 @@ void SyncBoard::take(const sync_message& message, std::int64_t received_mono_ns)
       break;
     case SYNC_FAULT:
       view_.refused = fault_text(message.fault);
+      spdlog::warn("sync board: refuses {}", view_.refused);
       break;
     default:
       break;

@@ -71,6 +71,7 @@ class SyncBoard {
   Status configure(SyncLink& link);
   void forget_configuration();
   void set_state(BoardState state, const std::string& description);
+  void see_status(const sync_status& status);
 
   BoardOptions options_;
   std::unique_ptr<SyncPort> port_;
@@ -88,9 +89,12 @@ class SyncBoard {
   std::int64_t last_heard_ns_ = 0;
   std::uint64_t last_board_ns_ = 0;
   bool connected_before_ = false;
+  bool started_ = false;
   bool agreed_ = false;  // HELLO with our schema
   std::optional<sync_configuration> has_, asked_,
-      refused_;        // the board's; the last CONFIGURE; what a FAULT answered
+      refused_;                          // the board's; the last CONFIGURE; what a FAULT answered
+  std::int64_t acquiring_since_ns_ = 0;  // 0: it is not
+  std::string logged_;
   bool safe_ = false;  // it went back to safe defaults by itself
 
   std::optional<BoardOptions::Trigger> trigger_;  // the latest wanted

@@ -219,6 +219,12 @@ TEST_F(DaemonAndBoard, GravityTurnsTheWorldUpright) {
                        flat.y() * std::sin(tilt) + flat.z() * std::cos(tilt));
   EXPECT_TRUE(eventually([&] { return strongest().dot(expected) > std::cos(0.02); }))
       << strongest().transpose() << " against " << expected.transpose();
+  // A reload of the same keeps the world as it was turned.
+  const json calibration = status()["calibration_id"];
+  daemon_->send(SIGHUP);
+  ASSERT_TRUE(daemon_->wait_for_line("configuration reloaded"));
+  EXPECT_EQ(status()["calibration_id"], calibration);
+  EXPECT_NEAR(board()["tilt_deg"].get<double>(), 12, 0.5);
 }
 
 TEST_F(DaemonAndBoard, LampsMoveTriggerAndExposure) {

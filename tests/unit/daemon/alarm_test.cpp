@@ -43,6 +43,37 @@ TEST(Alarm, StaleLightAndFailedRecordingAreSaid) {
   EXPECT_THAT(alarm_for(status), HasSubstr("3 frames"));
 }
 
+TEST(Alarm, ACameraThatDoesNotOpenIsSaidAfterAWhile) {
+  DaemonStatus status = well();
+  status.source_state = SourceState::opening;
+  status.source_description = "/dev/video0 is in use";
+  status.published = 0;
+  status.uptime_s = 1;
+  EXPECT_EQ(alarm_for(status), "");
+  status.uptime_s = 8;
+  EXPECT_THAT(alarm_for(status), HasSubstr("is in use"));
+}
+
+TEST(Alarm, ABoardThatDoesNotDoWhatItIsToldIsSaid) {
+  DaemonStatus status = well();
+  status.board.state = BoardState::connected;
+  status.board.status = sync_status{};
+  EXPECT_EQ(alarm_for(status), "");
+  status.board.acquiring_s = 9;
+  EXPECT_THAT(alarm_for(status), HasSubstr("no lock"));
+  status.board.acquiring_s = 0;
+  status.board.status->lock = SYNC_LOCK_HOLDOVER;
+  status.board.status->holdover_s = 1;
+  EXPECT_EQ(alarm_for(status), "") << "an edge may come late";
+  status.board.status->holdover_s = 7;
+  EXPECT_THAT(alarm_for(status), HasSubstr("since 7 s"));
+  status.board.status = sync_status{};
+  status.board.status->safe = 1;
+  EXPECT_THAT(alarm_for(status), HasSubstr("safe defaults"));
+  status.board.refused = "rate_numerator: allowed 1 to 1000";
+  EXPECT_THAT(alarm_for(status), HasSubstr("1 to 1000"));
+}
+
 TEST(Alarm, ARecordingThatEndedIsNoAlarm) {
   DaemonStatus status = well();
   status.source_state = SourceState::ended;
