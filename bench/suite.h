@@ -79,6 +79,7 @@ std::vector<Figure> fit_figures(const std::vector<Row>& rows);
 std::vector<Row> field_suite(const Options& options);
 std::vector<Row> lens_suite(const Options& options);
 std::vector<Row> response_suite(const Options& options);
+std::vector<Row> sync_suite(const Options& options);
 
 // CPU, compiler, flags, commit, date and all rows: schema "lightwell.bench/1".
 std::string to_json(const std::vector<std::pair<std::string, std::vector<Row>>>& results);

@@ -53,6 +53,7 @@ const std::vector<Suite>& suites() {
       {"field", field_suite},
       {"lens", lens_suite},
       {"response", response_suite},
+      {"sync", sync_suite},
       {"render", render_suite, render_figures},
       // Hundreds of rows: the lights suite has their plot, as means.
       {"coherence", coherence_suite, [](const std::vector<Row>&) { return std::vector<Figure>(); }},
