@@ -16,7 +16,7 @@
 namespace lightwell {
 namespace {
 
-constexpr int kPriority = 50;                       // below the kernel's own interrupt threads
+constexpr int kPriority = 49;                       // below the kernel's interrupt threads, which have 50
 constexpr std::int64_t kLongestSleep = 50'000'000;  // until it is seen that all is over
 constexpr double kForgets = 1.0 / 16;
 

@@ -88,6 +88,19 @@ class DaemonAndBoard : public ::testing::Test {
     }
     return direction;
   }
+  // A take of more than so many frames.
+  void record(const std::string& file, int frames) const {
+    HttpRequest request;
+    request.method = "POST";
+    request.path = "/api/v1/record";
+    request.body = json{{"action", "start"}, {"file", file}}.dump();
+    const auto started = http_request(http_, request);
+    ASSERT_TRUE(started && started->status == 200);
+    ASSERT_TRUE(eventually([&] { return status()["recording"]["frames"] > frames; })) << status();
+    request.body = json{{"action", "stop"}}.dump();
+    const auto stopped = http_request(http_, request);
+    ASSERT_TRUE(stopped && stopped->status == 200);
+  }
   [[nodiscard]] std::string metrics() const {
     HttpRequest request;
     request.path = "/metrics";
@@ -166,14 +179,7 @@ TEST_F(DaemonAndBoard, FramesCarryTheTimecodeAndSoDoesTheTake) {
   ASSERT_TRUE(first);
   EXPECT_EQ(first->hours, 10);
   EXPECT_TRUE(eventually([&] { return board()["trigger"]["lock"] == "locked"; })) << board();
-  HttpRequest record;
-  record.method = "POST";
-  record.path = "/api/v1/record";
-  record.body = R"({"action": "start", "file": "coded.mkv"})";
-  ASSERT_EQ(http_request(http_, record)->status, 200);
-  ASSERT_TRUE(eventually([&] { return status()["recording"]["frames"] > 30; })) << status();
-  record.body = R"({"action": "stop"})";
-  ASSERT_EQ(http_request(http_, record)->status, 200);
+  ASSERT_NO_FATAL_FAILURE(record("coded.mkv", 30));
   const auto take = RecordingReader::open(folder_.path() / "coded.mkv");
   ASSERT_TRUE(take);
   std::optional<RecordedFrame> first_frame, before;
@@ -240,14 +246,7 @@ TEST_F(DaemonAndBoard, LampsMoveTriggerAndExposure) {
   EXPECT_TRUE(eventually([&] {
     return std::abs(board()["trigger"]["rate_hz"].get<double>() - avoiding["rate_hz"].get<double>()) < 0.01;
   })) << board();
-  HttpRequest record;
-  record.method = "POST";
-  record.path = "/api/v1/record";
-  record.body = R"({"action": "start", "file": "avoided.mkv"})";
-  ASSERT_EQ(http_request(http_, record)->status, 200);
-  ASSERT_TRUE(eventually([&] { return status()["recording"]["frames"] > 2; })) << status();
-  record.body = R"({"action": "stop"})";
-  ASSERT_EQ(http_request(http_, record)->status, 200);
+  ASSERT_NO_FATAL_FAILURE(record("avoided.mkv", 2));
   const auto take = RecordingReader::open(folder_.path() / "avoided.mkv");
   ASSERT_TRUE(take);
   EXPECT_NEAR((*(*take)->skip())->exposure_us / avoiding["exposure_us"].get<double>(), 1, 0.02);
