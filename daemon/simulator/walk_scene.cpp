@@ -1,71 +1,49 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
+#include <algorithm>
 #include <cmath>
 
 #include "daemon/simulator/paint.h"
+#include "daemon/simulator/walk_stage.h"
 
-// The probe is carried through a room with near lamps: their direction, size and strength change with its
-// place. Metres; the probe's height is y = 0, the ceiling is above it. Light is not interreflected: walls
-// show what lamps and windows throw on them, plus an even ambience.
+// The probe is carried over the stage in lanes, as one mows a lawn: along x at the ground's height, along z 10 cm
+// higher, and so on to 30 cm, each layer's lanes between those of the layer two below; then from the beginning.
 namespace lightwell::simulator {
 namespace {
 
 constexpr int kWidth = 360, kHeight = 180;  // 1°
-constexpr double kKeyframe_s = 0.25;
-constexpr double kHalfX_m = 3, kHalfZ_m = 2.5, kCeiling_m = 1.6;
+// Walls are painted so often; between, the two pictures are mixed. Lamps and lenses are exact at every moment.
+constexpr double kKeyframe_s = 0.1;
+constexpr double kSpeed_m_s = 0.5;
+constexpr double kLane_m = 0.1;  // from one to the next
+constexpr double kLayer_m = 0.1;
+constexpr int kLayers = 4, kLanes = 17;
 
-struct Lamp {
-  Vec3d position_m;
-  double radius_m;
-  Rgbd intensity_cd;
-};
-const std::array<Lamp, 3> kLamps = {{{{-1.6, 0.9, 0.6}, 0.06, Rgbd(150, 115, 75)},
-                                     {{2.1, 0.7, -1.4}, 0.08, Rgbd(110, 112, 115)},
-                                     {{0.4, 1.4, 1.9}, 0.05, Rgbd(60, 62, 70)}}};
+constexpr double kLaneLength_m = 2 * kWalkHalf_m, kLaneAndTurn_m = kLaneLength_m + kLane_m;
+constexpr double kLayerWay_m = kLanes * kLaneAndTurn_m;
+
+// Along the lanes of a layer, `way` metres from their beginning.
+Vec3d place_on_lanes(int layer, double way) {
+  const double lane = std::floor(way / kLaneAndTurn_m);
+  const double rest = way - lane * kLaneAndTurn_m;
+  const double shift = layer >= 2 ? kLane_m / 2 : 0;
+  const double across =
+      std::min(lane * kLane_m + std::max(0.0, rest - kLaneLength_m) - kWalkHalf_m + shift, kWalkHalf_m);
+  const double forth = std::min(rest, kLaneLength_m) - kWalkHalf_m;
+  const double along = std::fmod(lane, 2) == 0 ? forth : -forth;
+  const double height = layer * kLayer_m;
+  // Every other layer from the corner where the one below it ends.
+  return layer % 2 == 0 ? Vec3d(along, height, across) : Vec3d(-across, height, -along);
+}
 
 Vec3d probe_position(double time_s) {
-  return {1.5 * std::sin(2 * kPi * time_s / 40), 0, 1.1 * std::sin(4 * kPi * time_s / 40)};
-}
-
-double ramp(double from, double to, double x) {
-  return std::clamp((x - from) / (to - from), 0.0, 1.0);
-}
-
-// A window in the wall x = +3 m: z from −1 to 0.6 m, y from 0.2 to 1.2 m, with edges of 6 cm.
-double window_part(const Vec3d& point, const Vec3d& normal) {
-  if (normal.x() != -1) return 0;
-  return ramp(-1.03, -0.97, point.z()) * ramp(0.63, 0.57, point.z()) * ramp(0.17, 0.23, point.y()) *
-         ramp(1.23, 1.17, point.y());
-}
-
-// Where a ray from inside first meets a wall or the ceiling.
-struct Hit {
-  Vec3d point, normal;
-};
-Hit meet_wall(const Vec3d& from, const Vec3d& d) {
-  const double tx = d.x() != 0 ? (std::copysign(kHalfX_m, d.x()) - from.x()) / d.x() : 1e9;
-  const double tz = d.z() != 0 ? (std::copysign(kHalfZ_m, d.z()) - from.z()) / d.z() : 1e9;
-  const double ty = d.y() > 0 ? (kCeiling_m - from.y()) / d.y() : 1e9;
-  const double t = std::min({tx, ty, tz});
-  Vec3d normal = Vec3d(0, -1, 0);
-  if (t == tx)
-    normal = {-std::copysign(1.0, d.x()), 0, 0};
-  else if (t == tz)
-    normal = {0, 0, -std::copysign(1.0, d.z())};
-  return {from + t * d, normal};
-}
-
-Rgbd wall_radiance(const Hit& hit) {
-  const Rgbd albedo = hit.normal.y() < 0 ? Rgbd(0.7, 0.7, 0.7) : Rgbd(0.55, 0.5, 0.45);
-  Rgbd irradiance = Rgbd::Constant(30);
-  for (const Lamp& lamp : kLamps) {
-    const Vec3d to = lamp.position_m - hit.point;
-    const double d2 = to.squaredNorm();
-    irradiance += lamp.intensity_cd * (std::max(0.0, to.dot(hit.normal)) / (d2 * std::sqrt(d2)));
-  }
-  const double window = window_part(hit.point, hit.normal);
-  return (1 - window) * albedo / kPi * irradiance + window * Rgbd(900, 1050, 1250);
+  const double way = std::fmod(kSpeed_m_s * time_s, kLayers * kLayerWay_m);
+  const int layer = std::min(static_cast<int>(way / kLayerWay_m), kLayers - 1);
+  const double in_layer = way - layer * kLayerWay_m;
+  const double last_turn = kLayerWay_m - kLane_m;
+  if (in_layer < last_turn) return place_on_lanes(layer, in_layer);
+  const double part = (in_layer - last_turn) / kLane_m;
+  return (1 - part) * place_on_lanes(layer, last_turn) + part * place_on_lanes((layer + 1) % kLayers, 0);
 }
 
 class WalkScene final : public Scene {
@@ -78,24 +56,17 @@ class WalkScene final : public Scene {
     SceneMoment moment;
     moment.parts = {{id, 1 - w}, {id + 1, w}};
     moment.position_m = probe_position(middle);
-    for (const Lamp& lamp : kLamps) {
-      const Vec3d to = lamp.position_m - *moment.position_m;
-      const double alpha = std::asin(lamp.radius_m / to.norm());
-      const double solid_angle = 4 * kPi * std::sin(alpha / 2) * std::sin(alpha / 2);
-      const Rgbd radiance = lamp.intensity_cd / (kPi * lamp.radius_m * lamp.radius_m);
-      moment.lights.push_back({to.normalized(), alpha, radiance * solid_angle});
-    }
+    moment.lights = stage_lights(*moment.position_m);
     return moment;
   }
 
   Layer layer(std::int64_t id) const override {
     const Vec3d from = probe_position(static_cast<double>(id) * kKeyframe_s);
-    return paint_upper_half(kWidth, kHeight,
-                            [&](const Vec3d& d) { return wall_radiance(meet_wall(from, d)); });
+    return paint_upper_half(kWidth, kHeight, [&](const Vec3d& d) { return stage_wall_radiance(from, d); });
   }
 
   std::vector<std::int64_t> lasting_layers() const override { return {}; }
-  double brightest_cd_m2() const override { return 2e4; }  // the first lamp's surface, 150 cd / (π 0.06² m²)
+  double brightest_cd_m2() const override { return kStageBrightest_cd_m2; }
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "daemon/simulator/frame_generator.h"
 #include "daemon/simulator/mains_light.h"
+#include "daemon/simulator/walk_stage.h"
 #include "tests/support/simulated_frames.h"
 
 namespace lightwell::simulator {
@@ -112,6 +113,47 @@ TEST(Scenes, StaticNeverChangesAndTheOthersDo) {
   EXPECT_EQ(lights_at("static", 0), lights_at("static", 11.7));
   for (const char* moving : {"day", "studio", "flicker", "walk"})
     EXPECT_NE(lights_at(moving, 0), lights_at(moving, 11.7));
+}
+
+TEST(Walk, IsOneWayOverTheWholeStageAtOneSpeed) {
+  const auto scene = make_walk_scene();
+  constexpr double kStep_s = 0.02;
+  Vec3d low = Vec3d::Constant(10), high = -low, last = *scene->at(-1e-9, 1e-9).position_m;
+  double length = 0;
+  for (double t = kStep_s; t < 231; t += kStep_s) {  // 4 layers of 17 lanes of 1.6 m and a turn at 0.5 m/s
+    const Vec3d at = *scene->at(t - 1e-9, t + 1e-9).position_m;
+    EXPECT_LE((at - last).norm(), 0.5 * kStep_s * 1.5 + 1e-9) << t;  // a layer's change is the steepest
+    length += (at - last).norm();
+    low = low.cwiseMin(at);
+    high = high.cwiseMax(at);
+    last = at;
+  }
+  EXPECT_NEAR(length, 0.5 * 231, 2);
+  EXPECT_LT((low - Vec3d(-kWalkHalf_m, 0, -kWalkHalf_m)).norm(), 0.02);
+  EXPECT_LT((high - Vec3d(kWalkHalf_m, 0.3, kWalkHalf_m)).norm(), 0.02);
+}
+
+// What the lenses throw on the ground: the slides, sharp, and as strong as a disc of their radiance makes it.
+TEST(Walk, ProjectorsDrawTheirPicturesOnTheGround) {
+  const auto on_ground = [](double x, double z, std::size_t lens) {
+    const DiscLight light = stage_lights({x, 0, z})[3 + lens];
+    return Rgbd(light.illuminance * light.direction.y());
+  };
+  const Rgbd red = on_ground(-0.56, -0.46, 0), green = on_ground(-0.2, -0.46, 0);
+  EXPECT_GT(red[0], 10 * red[1]);
+  EXPECT_GT(green[1], 5 * green[0]);
+  EXPECT_EQ(on_ground(-0.38, -0.46, 0).maxCoeff(), 0) << "between two squares";
+  EXPECT_EQ(on_ground(0.149, 0, 2).maxCoeff(), 0) << "a millimetre into the shadow of the blocker";
+  EXPECT_GT(on_ground(0.151, 0, 2)[0], 100);
+  const Vec3d to = Vec3d(1.3, 1.5, 1.0) - Vec3d(0.4, 0, 0.4);
+  const double exact = 6e4 * kPi * 0.07 * 0.07 / to.squaredNorm() * to.normalized().y();  // a small disc
+  EXPECT_NEAR(on_ground(0.4, 0.4, 1)[1] / exact, 1, 2e-3);
+  // Above the ground a picture is as blurred as the lens is wide: half of it at the edge.
+  const Vec3d edge(0.15, 0, -0.1), lens(0.5, 1.5, -1.5);
+  const Vec3d above = edge + 0.3 * (lens - edge);
+  const DiscLight blurred = stage_lights(above)[5];
+  const double full = 8e4 * kPi * 0.07 * 0.07 / (lens - above).squaredNorm();
+  EXPECT_NEAR(blurred.illuminance[0] / full, 0.5, 0.05);
 }
 
 TEST(Scenes, TheSunHasTheRealSunsStrength) {
