@@ -8,7 +8,7 @@
 
 #include "cli/command.h"
 #include "cli/number_list.h"
-#include "field/field_file.h"
+#include "interface/field_file.h"
 
 namespace lightwell::cli {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "field/field_file.h"
+#include "interface/field_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
