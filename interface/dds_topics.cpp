@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <map>
 
 #include "interface/dds_wire.h"
 
@@ -125,31 +126,40 @@ template <class Message>
 struct DdsReader<Message>::Impl {
   std::shared_ptr<DdsDomain> domain;  // outlives the entities below
   bool any_probe = true;
+  bool every_probe = false;
   std::string probe;
   Entity topic;
   Entity reader;
   Entity condition;
   Entity waitset;
   bool any_taken = false;
-  std::uint64_t last_number = 0;
-  std::int64_t last_capture_ns = 0;
+  // What was taken last, a probe.
+  struct Last {
+    std::uint64_t number = 0;
+    std::int64_t capture_ns = 0;
+  };
+  std::map<std::string, Last, std::less<>> last;
   Clock::time_point arrived;
   std::uint64_t refused = 0;
   std::string refusal;
 
   bool take_available(Message& message);
   bool accept(const typename Wire<Message>::Type& wire, const dds_sample_info_t& info, Message& message);
-  bool is_repeat(const typename Wire<Message>::Type& wire) const;
+  bool is_repeat(const typename Wire<Message>::Type& wire, std::string_view from) const;
 };
 
 // The publisher repeats the last lights for late joiners; whoever has them does not get them again.
 template <class Message>
-bool DdsReader<Message>::Impl::is_repeat(const typename Wire<Message>::Type& wire) const {
+bool DdsReader<Message>::Impl::is_repeat(const typename Wire<Message>::Type& wire,
+                                         std::string_view from) const {
   if constexpr (std::is_same_v<Message, ProbeStatus>) {
     static_cast<void>(wire);
+    static_cast<void>(from);
     return false;
   } else {
-    return any_taken && wire.header.number == last_number && wire.header.capture_mono_ns == last_capture_ns;
+    const auto found = last.find(from);
+    return found != last.end() && wire.header.number == found->second.number &&
+           wire.header.capture_mono_ns == found->second.capture_ns;
   }
 }
 
@@ -159,8 +169,8 @@ bool DdsReader<Message>::Impl::accept(const typename Wire<Message>::Type& wire, 
   const std::string_view from(wire.probe, ::strnlen(wire.probe, sizeof wire.probe));
   // A probe that is gone makes room for another; its samples without data carry the key alone.
   if (info.instance_state != DDS_IST_ALIVE && any_probe && from == probe) probe.clear();
-  if (!info.valid_data || (!probe.empty() && from != probe)) return false;
-  if (is_repeat(wire)) return false;
+  if (!info.valid_data || (!every_probe && !probe.empty() && from != probe)) return false;
+  if (is_repeat(wire, from)) return false;
   if (std::string wrong = from_wire(wire, message); !wrong.empty()) {
     ++refused;
     refusal = std::move(wrong);
@@ -170,13 +180,13 @@ bool DdsReader<Message>::Impl::accept(const typename Wire<Message>::Type& wire, 
   any_taken = true;
   arrived = Clock::now();
   if constexpr (!std::is_same_v<Message, ProbeStatus>) {
-    last_number = wire.header.number;
-    last_capture_ns = wire.header.capture_mono_ns;
+    last.insert_or_assign(std::string(from), Last{wire.header.number, wire.header.capture_mono_ns});
   }
   return true;
 }
 
-// Everything that is there, in batches; a later sample of the same probe replaces an earlier one.
+// Everything that is there, in batches; a later sample of the same probe replaces an earlier one. Of every probe: one
+// message, the others wait for the next call.
 template <class Message>
 bool DdsReader<Message>::Impl::take_available(Message& message) {
   constexpr std::uint32_t kBatch = 8;
@@ -184,11 +194,12 @@ bool DdsReader<Message>::Impl::take_available(Message& message) {
   for (;;) {
     std::array<void*, kBatch> samples{};
     std::array<dds_sample_info_t, kBatch> infos{};
-    const auto count = dds_take_wl(reader.get(), samples.data(), infos.data(), kBatch);
+    const auto count = dds_take_wl(reader.get(), samples.data(), infos.data(), every_probe ? 1 : kBatch);
     if (count <= 0) return taken;
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
       taken |= accept(*static_cast<const typename Wire<Message>::Type*>(samples[i]), infos[i], message);
     dds_return_loan(reader.get(), samples.data(), count);
+    if (taken && every_probe) return true;
   }
 }
 
@@ -202,6 +213,7 @@ Result<std::unique_ptr<DdsReader<Message>>> DdsReader<Message>::create(std::shar
                                                                        const DdsReaderOptions& options) {
   auto impl = std::make_unique<Impl>();
   impl->domain = std::move(domain);
+  impl->every_probe = options.every_probe;
   impl->any_probe = options.probe.empty();
   impl->probe = options.probe;
   const dds_entity_t participant = impl->domain->participant();
@@ -258,10 +270,12 @@ const std::string& DdsReader<Message>::refusal() const {
 template class DdsWriter<LightFrame>;
 template class DdsWriter<FitFrame>;
 template class DdsWriter<EnvironmentFrame>;
+template class DdsWriter<FieldFrame>;
 template class DdsWriter<ProbeStatus>;
 template class DdsReader<LightFrame>;
 template class DdsReader<FitFrame>;
 template class DdsReader<EnvironmentFrame>;
+template class DdsReader<FieldFrame>;
 template class DdsReader<ProbeStatus>;
 
 }  // namespace lightwell

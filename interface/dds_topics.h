@@ -13,7 +13,7 @@
 
 namespace lightwell {
 
-// Writers and readers of the four topics of interface/lightwell.idl. Quality of service, and why:
+// Writers and readers of the topics of interface/lightwell.idl. Quality of service, and why:
 //
 //   LightFrame        best effort, keep last 1, volatile. Only the newest frame matters: a lost one is not
 //   sent again,
@@ -24,6 +24,7 @@ namespace lightwell {
 //   for a small
 //                     socket buffer: lost ones are repaired. A late joiner gets the newest map at once.
 //   FitFrame          as EnvironmentFrame: small, and a late joiner gets the newest at once.
+//   FieldFrame        as EnvironmentFrame.
 //   ProbeStatus       reliable, keep last 1, transient local, never blocking. A late joiner gets the state at
 //   once.
 //
@@ -55,7 +56,9 @@ class DdsWriter {
 };
 
 struct DdsReaderOptions {
-  std::string probe;  // empty: the first that is heard, until it is gone
+  std::string probe{};  // empty: the first that is heard, until it is gone
+  // All of them, whatever `probe` says: each take gives one message, its header says whose.
+  bool every_probe = false;
 };
 
 // Gives the newest message that was not given yet; older ones are skipped. What a stranger sends wrong (NaN,
@@ -92,19 +95,23 @@ class DdsReader {
 extern template class DdsWriter<LightFrame>;
 extern template class DdsWriter<FitFrame>;
 extern template class DdsWriter<EnvironmentFrame>;
+extern template class DdsWriter<FieldFrame>;
 extern template class DdsWriter<ProbeStatus>;
 extern template class DdsReader<LightFrame>;
 extern template class DdsReader<FitFrame>;
 extern template class DdsReader<EnvironmentFrame>;
+extern template class DdsReader<FieldFrame>;
 extern template class DdsReader<ProbeStatus>;
 
 using LightWriter = DdsWriter<LightFrame>;
 using FitWriter = DdsWriter<FitFrame>;
 using EnvironmentWriter = DdsWriter<EnvironmentFrame>;
+using FieldWriter = DdsWriter<FieldFrame>;
 using StatusWriter = DdsWriter<ProbeStatus>;
 using LightReader = DdsReader<LightFrame>;
 using FitReader = DdsReader<FitFrame>;
 using EnvironmentReader = DdsReader<EnvironmentFrame>;
+using FieldReader = DdsReader<FieldFrame>;
 using StatusReader = DdsReader<ProbeStatus>;
 
 }  // namespace lightwell

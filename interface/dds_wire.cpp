@@ -4,90 +4,16 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <span>
-#include <string_view>
+
+#include "interface/dds_wire_parts.h"
 
 namespace lightwell {
+
+using namespace wire;
+
 namespace {
-
-// Cuts at the end of a UTF-8 character.
-template <std::size_t N>
-void set_text(char (&to)[N], std::string_view from) {
-  std::size_t size = std::min(from.size(), N - 1);
-  if (size < from.size())
-    while (size > 0 && (static_cast<unsigned char>(from[size]) & 0xC0) == 0x80) --size;
-  std::memcpy(to, from.data(), size);
-  std::memset(to + size, 0, N - size);
-}
-
-template <std::size_t N>
-std::string get_text(const char (&from)[N]) {
-  return {from, ::strnlen(from, N)};
-}
-
-// Control characters in a name from the network would end up in terminals and logs.
-template <std::size_t N>
-bool is_printable(const char (&text)[N]) {
-  const auto* const end = text + ::strnlen(text, N);
-  return std::none_of(text, end, [](char c) { return (static_cast<unsigned char>(c) < 0x20) || c == 0x7f; });
-}
-
-void set_rgb(float (&to)[3], const Rgb& from) {
-  for (int c = 0; c < 3; ++c) to[c] = from[c];
-}
-
-Rgb get_rgb(const float (&from)[3]) {
-  return {from[0], from[1], from[2]};
-}
-
-bool is_power(const float (&rgb)[3]) {
-  return std::all_of(rgb, rgb + 3, [](float v) { return std::isfinite(v) && v >= 0; });
-}
-
-void header_to_wire(const FrameHeader& header, lightwell_FrameHeader& wire) {
-  wire.number = header.number;
-  wire.camera_sequence = header.sequence;
-  wire.capture_mono_ns = header.capture_mono_ns;
-  wire.capture_utc_ns = header.capture_utc_ns;
-  wire.publish_mono_ns = header.publish_mono_ns;
-  set_text(wire.timecode, header.timecode);
-  set_text(wire.calibration_id, header.calibration_id);
-  wire.coverage =
-      header.coverage == Coverage::sphere ? lightwell_COVERAGE_SPHERE : lightwell_COVERAGE_HEMISPHERE;
-  wire.measured_part = header.measured_part;
-  set_rgb(wire.total_illuminance, header.total_illuminance);
-  wire.delay_frames = header.delay_frames;
-}
-
-const char* check_header(const lightwell_FrameHeader& wire) {
-  if (wire.coverage != lightwell_COVERAGE_SPHERE && wire.coverage != lightwell_COVERAGE_HEMISPHERE)
-    return "coverage is neither hemisphere nor sphere";
-  if (!(wire.measured_part >= 0 && wire.measured_part <= 1)) return "measured_part is not within 0 to 1";
-  if (!is_power(wire.total_illuminance)) return "total_illuminance is not finite and >= 0";
-  if (!(std::isfinite(wire.delay_frames) && wire.delay_frames >= 0))
-    return "delay_frames is not finite and >= 0";
-  if (!is_printable(wire.timecode) || !is_printable(wire.calibration_id))
-    return "a name has control characters";
-  return nullptr;
-}
-
-void header_from_wire(const lightwell_FrameHeader& wire, const char (&probe)[64], FrameHeader& header) {
-  header.probe = get_text(probe);
-  header.number = wire.number;
-  header.sequence = wire.camera_sequence;
-  header.capture_mono_ns = wire.capture_mono_ns;
-  header.capture_utc_ns = wire.capture_utc_ns;
-  header.publish_mono_ns = wire.publish_mono_ns;
-  header.timecode = get_text(wire.timecode);
-  header.calibration_id = get_text(wire.calibration_id);
-  header.coverage = wire.coverage == lightwell_COVERAGE_SPHERE ? Coverage::sphere : Coverage::hemisphere;
-  header.measured_part = wire.measured_part;
-  header.total_illuminance = get_rgb(wire.total_illuminance);
-  header.delay_frames = wire.delay_frames;
-}
 
 float squared_norm(const float (&v)[3]) {
   return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
@@ -106,14 +32,6 @@ std::string check_light(const lightwell_Light& light, std::size_t index, bool ha
   if (!(light.angular_radius_rad >= 0 && light.angular_radius_rad <= static_cast<float>(kPi)))
     return wrong("angular_radius_rad is outside 0 to pi");
   return {};
-}
-
-// Power of two that puts the largest value into [2^14, 2^15), well inside the half range (65504).
-float scale_for(std::span<const float> radiance) {
-  const float largest = radiance.empty() ? 0 : *std::max_element(radiance.begin(), radiance.end());
-  if (!(largest > 0)) return 1;
-  // Not below the smallest normal float, whose inverse must stay finite.
-  return std::ldexp(1.0f, std::max(std::ilogb(largest) - 14, -126));
 }
 
 }  // namespace
@@ -271,8 +189,7 @@ std::string to_wire(const EnvironmentFrame& message, lightwell_EnvironmentFrame&
   wire.scale = scale_for(map.radiance);
   const float inverse = 1 / wire.scale;
   buffer.resize(map.radiance.size());
-  for (std::size_t i = 0; i < buffer.size(); ++i)
-    buffer[i] = Eigen::numext::bit_cast<std::uint16_t>(Eigen::half(map.radiance[i] * inverse));
+  for (std::size_t i = 0; i < buffer.size(); ++i) buffer[i] = half_of(map.radiance[i] * inverse);
   const auto count = static_cast<std::uint32_t>(buffer.size());
   wire.half_radiance = {count, count, buffer.data(), false};
   return {};
@@ -291,8 +208,7 @@ std::string from_wire(const lightwell_EnvironmentFrame& wire, EnvironmentFrame& 
   // A float just above pi is pi.
   if (!(wire.theta_max_rad > 0 && wire.theta_max_rad <= static_cast<float>(kPi)))
     return "theta_max_rad is not within 0 to pi";
-  // 2^112 × 65504 is still a float.
-  if (!(wire.scale > 0 && wire.scale <= std::ldexp(1.0f, 112))) return "scale is not positive and finite";
+  if (!is_scale(wire.scale)) return "scale is not positive and finite";
   // Sign bit, or all exponent bits: negative, infinite, NaN.
   if (std::any_of(halves.begin(), halves.end(),
                   [](std::uint16_t h) { return (h & 0x8000) != 0 || (h & 0x7c00) == 0x7c00; }))
@@ -305,9 +221,7 @@ std::string from_wire(const lightwell_EnvironmentFrame& wire, EnvironmentFrame& 
   if (message.map.grid != grid || message.map.channels != channels ||
       message.map.radiance.size() != halves.size())
     message.map = PolarMap::make(grid, channels);
-  for (std::size_t i = 0; i < halves.size(); ++i)
-    message.map.radiance[i] =
-        static_cast<float>(Eigen::numext::bit_cast<Eigen::half>(halves[i])) * wire.scale;
+  for (std::size_t i = 0; i < halves.size(); ++i) message.map.radiance[i] = float_of(halves[i]) * wire.scale;
   message.map.peak = message.map.radiance;
   message.map.coverage = wire.header.measured_part;
   return {};

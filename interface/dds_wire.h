@@ -44,6 +44,19 @@ struct Wire<EnvironmentFrame> {
   static constexpr bool kReliable = true;
 };
 template <>
+struct Wire<FieldFrame> {
+  using Type = lightwell_FieldFrame;
+  struct Buffer {
+    std::vector<std::uint16_t> radiance;
+    std::vector<std::uint8_t> confidence;
+    std::vector<lightwell_FieldProbe> probes;
+    std::vector<lightwell_FieldLamp> lamps;
+  };
+  static const dds_topic_descriptor_t& descriptor() { return lightwell_FieldFrame_desc; }
+  static constexpr const char* kTopic = "lightwell/FieldFrame";
+  static constexpr bool kReliable = true;
+};
+template <>
 struct Wire<ProbeStatus> {
   using Type = lightwell_ProbeStatus;
   struct Buffer {};
@@ -58,6 +71,9 @@ inline constexpr std::size_t kWireHarmonics = 25;
 inline constexpr std::size_t kMaxWireHalves = 12582912;
 inline constexpr std::uint32_t kMaxRings = 4096;
 inline constexpr std::uint32_t kMaxSectors = 8192;
+inline constexpr std::size_t kMaxWireFieldHalves = 25165824;
+inline constexpr std::size_t kMaxWireFieldPoints = 262144;
+inline constexpr std::size_t kMaxWireFieldParts = 64;  // probes, and lamps
 
 // Fills `wire` from a message; the sequences point into `buffer`, which must live as long. The probe's name
 // is the writer's business. Empty string: good; else what does not fit.
@@ -65,6 +81,7 @@ std::string to_wire(const LightFrame& message, lightwell_LightFrame& wire, Wire<
 std::string to_wire(const FitFrame& message, lightwell_FitFrame& wire, Wire<FitFrame>::Buffer& buffer);
 std::string to_wire(const EnvironmentFrame& message, lightwell_EnvironmentFrame& wire,
                     Wire<EnvironmentFrame>::Buffer& buffer);
+std::string to_wire(const FieldFrame& message, lightwell_FieldFrame& wire, Wire<FieldFrame>::Buffer& buffer);
 std::string to_wire(const ProbeStatus& message, lightwell_ProbeStatus& wire,
                     Wire<ProbeStatus>::Buffer& buffer);
 
@@ -72,6 +89,7 @@ std::string to_wire(const ProbeStatus& message, lightwell_ProbeStatus& wire,
 std::string from_wire(const lightwell_LightFrame& wire, LightFrame& message);
 std::string from_wire(const lightwell_FitFrame& wire, FitFrame& message);
 std::string from_wire(const lightwell_EnvironmentFrame& wire, EnvironmentFrame& message);
+std::string from_wire(const lightwell_FieldFrame& wire, FieldFrame& message);
 std::string from_wire(const lightwell_ProbeStatus& wire, ProbeStatus& message);
 
 }  // namespace lightwell

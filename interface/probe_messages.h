@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lighting/field/light_field.h"
 #include "lighting/light_set.h"
 #include "lighting/polar_map.h"
 
@@ -57,6 +58,27 @@ struct FitFrame {
 struct EnvironmentFrame {
   FrameHeader header;
   PolarMap map;  // radiance and grid travel; solid angles are the grid's, peak is the radiance, clipped is 0
+};
+
+struct FieldFrame {
+  FrameHeader header;
+  LightField field;
+  struct Probe {
+    std::string name;
+    Vec3d position = Vec3d::Zero();
+    std::uint64_t number = 0;
+    float age_s = 0;
+    float weight = 0;
+  };
+  std::vector<Probe> probes;
+  struct Lamp {
+    std::uint32_t id = 0;
+    Vec3d position = Vec3d::Zero();
+    float sigma_m = 0;
+    Rgb intensity = Rgb::Zero();
+    float weight = 0;
+  };
+  std::vector<Lamp> lamps;
 };
 
 struct ProbeStatus {

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <map>
 #include <thread>
 
 #include "tests/support/dds.h"
@@ -132,6 +133,64 @@ TEST(DdsTopics, EnvironmentKeepsElevenBitsOverEightDecades) {
     for (std::size_t i = 0; i < sent.map.radiance.size(); ++i)
       EXPECT_NEAR(received.map.radiance[i], sent.map.radiance[i], sent.map.radiance[i] * std::exp2(-11.0f));
   }
+}
+
+FieldFrame example_field(std::uint64_t number, int side) {
+  FieldFrame frame;
+  frame.header.number = number;
+  frame.field.grid = {{side, side + 1, side}, {-1, 0, -2}, {1, 2, 2.5}};
+  frame.field.radiance.resize(frame.field.grid.points() * 75);
+  for (std::size_t i = 0; i < frame.field.radiance.size(); ++i)
+    frame.field.radiance[i] = 1e5f * std::sin(static_cast<float>(i));
+  frame.field.confidence.assign(frame.field.grid.points(), 0.2f);
+  frame.probes = {{"left", {-1, 1, 0}, 12, 0.25f, 1}, {"right", {1, 1, 0}, 7, 3.5f, 0}};
+  frame.lamps = {{5, {0, 3, 0}, 0.02f, {100, 90, 80}, 0.5f}};
+  return frame;
+}
+
+TEST(DdsTopics, FieldArrivesWithinHalfFloats) {
+  const auto writer = FieldWriter::create(domain(), "stage").value();
+  const FieldFrame sent = example_field(3, 16);
+  ASSERT_TRUE(writer->write(sent));
+  const auto reader = FieldReader::create(domain()).value();  // a late one
+  FieldFrame received;
+  ASSERT_TRUE(reader->take(received, kPatience)) << reader->refusal();
+  EXPECT_EQ(received.header.probe, "stage");
+  EXPECT_EQ(received.field.grid.size, sent.field.grid.size);
+  EXPECT_EQ(received.field.grid.high, sent.field.grid.high);
+  EXPECT_EQ(received.field.degree, 4);
+  ASSERT_EQ(received.field.radiance.size(), sent.field.radiance.size());
+  // Half an ulp of 11 bits, of the largest value where others are far below it.
+  for (std::size_t i = 0; i < sent.field.radiance.size(); ++i)
+    ASSERT_NEAR(received.field.radiance[i], sent.field.radiance[i], 1e5 * 0x1p-11);
+  EXPECT_NEAR(received.field.confidence[7], 0.2, 0.5 / 255);
+  ASSERT_EQ(received.probes.size(), 2u);
+  EXPECT_EQ(received.probes[1].name, "right");
+  EXPECT_EQ(received.probes[1].age_s, 3.5f);
+  ASSERT_EQ(received.lamps.size(), 1u);
+  EXPECT_EQ(received.lamps[0].position, Vec3d(0, 3, 0));
+  EXPECT_EQ(received.lamps[0].weight, 0.5f);
+}
+
+TEST(DdsTopics, ReaderOfEveryProbeGetsTheNewestOfEachOnce) {
+  const auto first = EnvironmentWriter::create(domain(), "first").value();
+  const auto second = EnvironmentWriter::create(domain(), "second").value();
+  for (std::uint64_t number = 1; number <= 3; ++number) {
+    ASSERT_TRUE(first->write(example_environment(number, 1)));
+    ASSERT_TRUE(second->write(example_environment(10 + number, 3)));
+  }
+  const auto reader = EnvironmentReader::create(domain(), {.every_probe = true}).value();
+  std::map<std::string, std::uint64_t> numbers;
+  EnvironmentFrame received;
+  while (numbers.size() < 2) {
+    ASSERT_TRUE(reader->take(received, kPatience));
+    numbers[received.header.probe] = received.header.number;
+  }
+  EXPECT_EQ(numbers["first"], 3u);
+  EXPECT_EQ(numbers["second"], 13u);
+  EXPECT_FALSE(reader->take(received, 50ms));
+  ASSERT_TRUE(first->write(example_environment(3, 1)));  // the same again
+  EXPECT_FALSE(reader->take(received, 50ms));
 }
 
 TEST(DdsTopics, BlackEnvironmentStaysBlack) {

@@ -56,6 +56,27 @@ struct Map {
   }
 };
 
+struct Field {
+  std::uint16_t halves[96] = {0xbc00, 0x3c00};  // 2 × 2 × 2 points of degree 1; -1, 1
+  std::uint8_t confidence[8] = {0, 255};
+  lightwell_FieldProbe probes[1] = {{"a", {1, 2, 3}, 7, 0.1f, 1}};
+  lightwell_FieldLamp lamps[1] = {{3, {1, 2, 3}, 0.1f, {10, 20, 30}, 1}};
+  lightwell_FieldFrame frame{};
+  Field() {
+    std::strcpy(frame.probe, "stranger");
+    for (int a = 0; a < 3; ++a) {
+      frame.size[a] = 2;
+      frame.high[a] = 1;
+    }
+    frame.degree = 1;
+    frame.scale = 2;
+    frame.half_radiance = {96, 96, halves, false};
+    frame.confidence = {8, 8, confidence, false};
+    frame.probes = {1, 1, probes, false};
+    frame.lamps = {1, 1, lamps, false};
+  }
+};
+
 TEST(DdsWire, GoodMessagesOfAStrangerAreRead) {
   LightFrame lights;
   EXPECT_EQ(from_wire(Lights().frame, lights), "");
@@ -172,6 +193,60 @@ TEST(DdsWire, MalformedMapsAreRefused) {
     EnvironmentFrame message;
     EXPECT_NE(from_wire(spoilt.frame, message), "") << "spoiler " << index;
     EXPECT_TRUE(message.map.radiance.empty());
+    ++index;
+  }
+}
+
+TEST(DdsWire, FieldOfAStrangerIsRead) {
+  FieldFrame field;
+  ASSERT_EQ(from_wire(Field().frame, field), "");
+  EXPECT_EQ(field.field.grid.points(), 8u);
+  EXPECT_EQ(field.field.radiance[0], -2);
+  EXPECT_EQ(field.field.radiance[1], 2);
+  EXPECT_EQ(field.field.confidence[1], 1);
+  ASSERT_EQ(field.probes.size(), 1u);
+  EXPECT_EQ(field.probes[0].position, Vec3d(1, 2, 3));
+  ASSERT_EQ(field.lamps.size(), 1u);
+  EXPECT_EQ(field.lamps[0].intensity[2], 30);
+}
+
+TEST(DdsWire, MalformedFieldsAreRefusedAndLeaveTheMessageAlone) {
+  const std::function<void(Field&)> spoilers[] = {
+      [](Field& f) { f.frame.size[1] = 1; },
+      [](Field& f) { f.frame.size[1] = 3; },
+      [](Field& f) { f.frame.size[0] = 0xffffffff; },
+      [](Field& f) { f.frame.low[2] = kNan; },
+      [](Field& f) { f.frame.high[2] = kInfinity; },
+      [](Field& f) { f.frame.high[2] = 0; },
+      [](Field& f) { f.frame.degree = 0; },
+      [](Field& f) { f.frame.degree = 9; },
+      [](Field& f) { f.frame.degree = 2; },
+      [](Field& f) { f.frame.scale = kNan; },
+      [](Field& f) { f.frame.scale = -1; },
+      [](Field& f) { f.halves[95] = 0x7c00; },
+      [](Field& f) { f.halves[95] = 0xfe00; },
+      [](Field& f) { f.frame.half_radiance._length = 95; },
+      [](Field& f) { f.frame.confidence._length = 7; },
+      [](Field& f) { f.frame.probes._length = 65; },
+      [](Field& f) { f.probes[0].position[1] = kNan; },
+      [](Field& f) { f.probes[0].age_s = -1; },
+      [](Field& f) { f.probes[0].weight = 1.5f; },
+      [](Field& f) { std::strcpy(f.probes[0].probe, "\x1b[2J"); },
+      [](Field& f) { f.lamps[0].position[1] = kInfinity; },
+      [](Field& f) { f.lamps[0].sigma_m = kNan; },
+      [](Field& f) { f.lamps[0].intensity[1] = -1; },
+      [](Field& f) { f.lamps[0].weight = kNan; },
+      [](Field& f) { f.frame.header.measured_part = 2; },
+  };
+  int index = 0;
+  for (const auto& spoil : spoilers) {
+    Field spoilt;
+    spoil(spoilt);
+    FieldFrame message;
+    message.header.number = 99;
+    EXPECT_NE(from_wire(spoilt.frame, message), "") << "spoiler " << index;
+    EXPECT_EQ(message.header.number, 99u);
+    EXPECT_TRUE(message.field.radiance.empty());
     ++index;
   }
 }
