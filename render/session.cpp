@@ -26,6 +26,7 @@
 #include "render/session_inputs.h"
 #include "render/session_text.h"
 #include "render/statistics.h"
+#include "render/tracked_camera.h"
 #include "render/window.h"
 
 namespace lightwell::render {

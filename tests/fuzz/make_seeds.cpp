@@ -209,6 +209,13 @@ void takes(const std::filesystem::path& folder) {
     }
 }
 
+void poses(const std::filesystem::path& folder) {
+  write(folder / "places", "time_ns,x,y,z\n1000,0,1,2\n2000,0.1,1,2\n");
+  write(folder / "turns",
+        "time_ns,x,y,z,qx,qy,qz,qw,sample_ns\n"
+        "1000,0,1,2,0,0,0,1,77\n9000000,0.1,1,2,0,0.7071,0,0.7071,8999000\n");
+}
+
 void tracking(const std::filesystem::path& folder) {
   std::string freed = std::string(1, '\0') + "\xD1\x01" + std::string(26, '\x02');
   freed += '\x3B';
@@ -263,6 +270,7 @@ int main(int argc, char** argv) {
   scenes(folder / "gltf");
   takes(folder / "recording");
   tracking(folder / "tracking");
+  poses(folder / "poses");
   std::filesystem::create_directories(folder / "sync_protocol");
   sync_protocol(folder / "sync_protocol");
   return 0;

@@ -3,23 +3,28 @@
 // Packets of camera trackers: FreeD's, and OpenTrackIO's in the segments that the input's first byte says, with the
 // checksums made right, so that what lies behind them is reached as well.
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
-#include "render/freed_packet.h"
-#include "render/opentrackio_packet.h"
+#include "interface/freed_packet.h"
+#include "interface/opentrackio_packet.h"
 
 using namespace lightwell;
-using namespace lightwell::render;
 
 namespace {
 
 void expect_camera(const TrackedCamera& tracked) {
-  const SceneCamera camera = tracked_camera(tracked, {});
-  verify_bug(camera.world_from_camera.allFinite(), "a pose that was accepted is nowhere");
+  const ProbePose pose = pose_from_tracked(tracked);
+  verify_bug(pose.position_m.allFinite() && std::abs(pose.world_from_probe.norm() - 1) < 1e-9,
+             "a pose that was accepted is nowhere");
   const Eigen::Matrix3d& r = tracked.stage_from_camera;
   verify_bug((r * r.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-9,
              "a pose that was accepted is no rotation");
-  verify_bug(camera.yfov_rad > 0 && camera.yfov_rad < 3.15f, "a field of view that no lens has");
+  verify_bug(tracked.focal_length_mm.value_or(1) > 0 && tracked.sensor_height_mm.value_or(1) > 0,
+             "a field of view that no lens has");
+  const PanTiltRoll turn = pan_tilt_roll_from(r);
+  verify_bug((rotation_from_pan_tilt_roll(turn.pan_deg, turn.tilt_deg, turn.roll_deg) - r).norm() < 1e-6,
+             "angles that are another turn");
 }
 
 void expect_refusal(const Error& error) {

@@ -4,11 +4,12 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
+#include "interface/tracking_pose.h"
 #include "lighting/result.h"
-#include "render/tracking_pose.h"
 
-namespace lightwell::render {
+namespace lightwell {
 
 struct FreedPacket {
   std::uint8_t camera_id = 0;
@@ -22,5 +23,7 @@ struct FreedPacket {
 // the camera looks along +Y at zero pan; the checksum is 64 less all other bytes, modulo 256.
 // bad_input: another length or type, a wrong checksum, an angle beyond ±180°.
 Result<FreedPacket> parse_freed(std::span<const std::uint8_t> bytes);
+// The message that says so, without focal length; a position beyond ±131 m, FreeD's own range, is held at its end.
+std::vector<std::uint8_t> freed_message(const FreedPacket& packet);
 
-}  // namespace lightwell::render
+}  // namespace lightwell

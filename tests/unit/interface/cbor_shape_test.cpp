@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "render/cbor_shape.h"
+#include "interface/cbor_shape.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace lightwell::render {
+namespace lightwell {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -217,4 +217,4 @@ TEST(CborShape, WhatAReaderTakesIsWellFormed) {
 }
 
 }  // namespace
-}  // namespace lightwell::render
+}  // namespace lightwell

@@ -6,11 +6,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "interface/tracking_pose.h"
 #include "lighting/result.h"
-#include "render/tracking_pose.h"
 
-namespace lightwell::render {
+namespace lightwell {
 
 // Puts together the samples of OpenTrackIO datagrams (SMPTE RIS OSVP, opentrackio.org, "Packet Header"): 16 bytes,
 // big-endian: "OTrk", reserved, encoding (1: JSON, 2: CBOR), sequence, offset of the segment, last-segment flag and
@@ -19,7 +20,7 @@ namespace lightwell::render {
 // text keys, no tags.
 // A sample's camera: its transforms composed in their order (translation in metres, pan, tilt and roll in degrees,
 // TrackedCamera's frame and right-hand rule, "clockwise around the axis" in the words of the specification), the lens's
-// pinholeFocalLength and static.camera.activeSensorPhysicalDimensions.height in millimetres.
+// pinholeFocalLength and static.camera.activeSensorPhysicalDimensions.height in millimetres, timing.sampleTimestamp.
 class OpenTrackIoReader {
  public:
   // The camera of a finished sample; nothing: more segments are to come, or the sample tells no pose.
@@ -35,7 +36,10 @@ class OpenTrackIoReader {
   std::optional<double> sensor_height_mm_;  // static data come in some samples only
 };
 
+// A sample of a camera's pose and sampled_ns as one datagram: JSON, one segment, one transform, metres and degrees.
+std::vector<std::uint8_t> opentrackio_datagram(const TrackedCamera& camera, std::uint16_t sequence);
+
 // Fletcher's checksum of two sums modulo 256, the second in the high byte.
 std::uint16_t fletcher16(std::span<const std::uint8_t> bytes, std::uint16_t start = 0);
 
-}  // namespace lightwell::render
+}  // namespace lightwell

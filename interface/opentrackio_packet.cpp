@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "render/opentrackio_packet.h"
+#include "interface/opentrackio_packet.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "render/cbor_shape.h"
+#include "interface/cbor_shape.h"
 
-namespace lightwell::render {
+namespace lightwell {
 namespace {
 
 using nlohmann::json;
@@ -110,6 +110,18 @@ Result<std::optional<double>> number_at(const json& root, std::initializer_list<
   return number(**object, key, low, high);
 }
 
+// timing.sampleTimestamp: seconds and nanoseconds of the tracker's own clock.
+Result<std::optional<std::int64_t>> sampled_ns(const json& root) {
+  constexpr double kMostSeconds = 9e9;  // what nanoseconds of 64 bits hold
+  const auto seconds = number_at(root, {"timing", "sampleTimestamp"}, "seconds", 0, kMostSeconds);
+  if (!seconds) return seconds.error();
+  const auto ns = number_at(root, {"timing", "sampleTimestamp"}, "nanoseconds", 0, 999'999'999);
+  if (!ns) return ns.error();
+  if (!*seconds || !*ns) return std::optional<std::int64_t>();
+  return std::optional(static_cast<std::int64_t>(**seconds) * 1'000'000'000 +
+                       static_cast<std::int64_t>(**ns));
+}
+
 struct Sample {
   bool has_pose = false;
   TrackedCamera camera;
@@ -127,6 +139,9 @@ Result<Sample> read_sample(const json& root) {
       number_at(root, {"static", "camera", "activeSensorPhysicalDimensions"}, "height", 0.01, 1e4);
   if (!height) return height.error();
   sample.camera.sensor_height_mm = *height;
+  const auto sampled = sampled_ns(root);
+  if (!sampled) return sampled.error();
+  sample.camera.sampled_ns = *sampled;
   const auto transforms = root.find("transforms");
   if (transforms == root.end()) return sample;
   if (!transforms->is_array() || transforms->empty()) return bad("transforms: not a list of objects");
@@ -158,6 +173,35 @@ std::uint16_t fletcher16(std::span<const std::uint8_t> bytes, std::uint16_t star
     high = static_cast<std::uint8_t>(high + low);
   }
   return static_cast<std::uint16_t>(high << 8 | low);
+}
+
+std::vector<std::uint8_t> opentrackio_datagram(const TrackedCamera& camera, std::uint16_t sequence) {
+  const PanTiltRoll turn = pan_tilt_roll_from(camera.stage_from_camera);
+  const Vec3d& at = camera.position_m;
+  json sample = {
+      {"protocol", {{"name", "OpenTrackIO"}, {"version", {1, 0, 0}}}},
+      {"sourceNumber", 1},
+      {"transforms",
+       {{{"id", "Probe"},
+         {"translation", {{"x", at.x()}, {"y", at.y()}, {"z", at.z()}}},
+         {"rotation", {{"pan", turn.pan_deg}, {"tilt", turn.tilt_deg}, {"roll", turn.roll_deg}}}}}}};
+  if (camera.sampled_ns)
+    sample["timing"]["sampleTimestamp"] = {{"seconds", *camera.sampled_ns / 1'000'000'000},
+                                           {"nanoseconds", *camera.sampled_ns % 1'000'000'000}};
+  const std::string payload = sample.dump();
+  std::vector<std::uint8_t> bytes = {'O', 'T', 'r', 'k', 0, kJson};
+  const auto put_16 = [&bytes](std::size_t value) {
+    bytes.push_back(static_cast<std::uint8_t>(value >> 8 & 255));
+    bytes.push_back(static_cast<std::uint8_t>(value & 255));
+  };
+  put_16(sequence);
+  put_16(0);  // the segment's offset, 32 bits
+  put_16(0);
+  put_16(payload.size() | 0x8000u);  // the last segment
+  const std::vector<std::uint8_t> body(payload.begin(), payload.end());
+  put_16(fletcher16(body, fletcher16(bytes)));
+  bytes.insert(bytes.end(), body.begin(), body.end());
+  return bytes;
 }
 
 Result<std::optional<TrackedCamera>> OpenTrackIoReader::fail(const std::string& what) {
@@ -198,4 +242,4 @@ Result<std::optional<TrackedCamera>> OpenTrackIoReader::take(std::span<const std
   return std::optional<TrackedCamera>(sample->camera);
 }
 
-}  // namespace lightwell::render
+}  // namespace lightwell

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "render/cbor_shape.h"
+#include "interface/cbor_shape.h"
 
 #include <optional>
 #include <vector>
 
-namespace lightwell::render {
+namespace lightwell {
 namespace {
 
 enum Major : unsigned { kBytes = 2, kText = 3, kArray = 4, kMap = 5, kTag = 6, kSimple = 7 };
@@ -124,4 +124,4 @@ bool is_shallow_cbor(std::span<const std::uint8_t> bytes, std::size_t most_depth
   return Walk(bytes, most_depth).well_formed();
 }
 
-}  // namespace lightwell::render
+}  // namespace lightwell

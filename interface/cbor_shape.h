@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-namespace lightwell::render {
+namespace lightwell {
 
 // True where the bytes are one well-formed CBOR item and nothing behind it, nested no deeper than this: arrays, maps, tags
 // and strings of no given length count one each. Needs no more stack than the depth allows and no memory for what lengths
@@ -13,4 +13,4 @@ namespace lightwell::render {
 // source: RFC 8949, sections 3 and 5.3.1, appendix C
 bool is_shallow_cbor(std::span<const std::uint8_t> bytes, std::size_t most_depth);
 
-}  // namespace lightwell::render
+}  // namespace lightwell

@@ -5,14 +5,16 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <thread>
 
-#include "render/freed_packet.h"
-#include "render/opentrackio_packet.h"
-#include "render/tracking_stream.h"
+#include "interface/freed_packet.h"
+#include "interface/opentrackio_packet.h"
+#include "interface/tracking_receiver.h"
 
-namespace lightwell::render {
+namespace lightwell {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -39,18 +41,18 @@ Bytes freed(double pan, double tilt, double roll, const Vec3d& mm, double zoom =
   return bytes;
 }
 
-// Where the picture's axis and its top point to in the scene.
-Vec3f forward(const TrackedCamera& tracked) {
-  return -tracked_camera(tracked, {}).world_from_camera.col(2).head<3>();
+// Where a tracked camera's axis and its top point to in the world.
+Vec3d forward(const TrackedCamera& tracked) {
+  return pose_from_tracked(tracked).world_from_probe * -Vec3d::UnitZ();
 }
-Vec3f up(const TrackedCamera& tracked) {
-  return tracked_camera(tracked, {}).world_from_camera.col(1).head<3>();
+Vec3d up(const TrackedCamera& tracked) {
+  return pose_from_tracked(tracked).world_from_probe * Vec3d::UnitY();
 }
-Vec3f eye(const TrackedCamera& tracked) {
-  return tracked_camera(tracked, {}).world_from_camera.col(3).head<3>();
+Vec3d eye(const TrackedCamera& tracked) {
+  return pose_from_tracked(tracked).position_m;
 }
-void expect_vector(const Vec3f& actual, const Vec3f& expected) {
-  EXPECT_LE((actual - expected).norm(), 1e-5f) << actual.transpose() << " is not " << expected.transpose();
+void expect_vector(const Vec3d& actual, const Vec3d& expected) {
+  EXPECT_LE((actual - expected).norm(), 1e-9) << actual.transpose() << " is not " << expected.transpose();
 }
 
 TEST(Freed, AxesAndSignsAreTheManuals) {
@@ -59,9 +61,9 @@ TEST(Freed, AxesAndSignsAreTheManuals) {
     EXPECT_TRUE(packet.ok()) << packet.error().message;
     return packet->camera;
   };
-  const float half = std::sqrt(0.5f);
+  const double half = std::sqrt(0.5);
   // Stage x, y, z is x, z, −y of the scene; zero looks along +Y of the stage.
-  expect_vector(eye(at(0, 0, 0)), {1, 1.5f, -2});
+  expect_vector(eye(at(0, 0, 0)), {1, 1.5, -2});
   expect_vector(forward(at(0, 0, 0)), {0, 0, -1});
   expect_vector(up(at(0, 0, 0)), {0, 1, 0});
   expect_vector(forward(at(90, 0, 0)), {1, 0, 0});           // pan to the right
@@ -125,10 +127,11 @@ void expect_sample(const Result<std::optional<TrackedCamera>>& taken) {
   ASSERT_TRUE(taken->has_value());
   const TrackedCamera& camera = **taken;
   // Panned by 90° to the left about +Z, stage +Y is −X: (10 − 2, 0, 1.5) on the stage.
-  expect_vector(eye(camera), {8, 1.5f, 0});
-  const float half = std::sqrt(0.5f);
+  expect_vector(eye(camera), {8, 1.5, 0});
+  const double half = std::sqrt(0.5);
   expect_vector(forward(camera), {-half, half, 0});
-  EXPECT_FLOAT_EQ(tracked_camera(camera, {}).yfov_rad, static_cast<float>(2 * std::atan(0.5)));
+  EXPECT_EQ(camera.focal_length_mm, 24.0);
+  EXPECT_EQ(camera.sensor_height_mm, 24.0);
 }
 
 TEST(OpenTrackIo, TransformsAreComposedInOrderAndTheLensGivesTheField) {
@@ -181,26 +184,29 @@ TEST(OpenTrackIo, AMalformedDatagramIsRefusedAndTheNextIsRead) {
   }
   wrong.push_back(datagram(kSample, 0, true, 2));
   wrong.push_back(datagram(kSample, 0, true, 3));
-  for (const char* text : {"",
-                           "{",
-                           "[]",
-                           "7",
-                           "null",
-                           R"({"transforms":[]})",
-                           R"({"transforms":[7]})",
-                           R"({"transforms":{}})",
-                           R"({"transforms":[{"translation":{"x":NaN,"y":0,"z":0}}]})",
-                           R"({"transforms":[{"translation":{"x":1e999,"y":0,"z":0}}]})",
-                           R"({"transforms":[{"translation":{"x":1e7,"y":0,"z":0}}]})",
-                           R"({"transforms":[{"translation":{"x":"1","y":0,"z":0}}]})",
-                           R"({"transforms":[{"translation":{"x":1,"y":0}}]})",
-                           R"({"transforms":[{"rotation":{"pan":1e30,"tilt":0,"roll":0}}]})",
-                           R"({"transforms":[{"scale":{"x":1e300,"y":0,"z":0}}]})",
-                           R"({"lens":{"pinholeFocalLength":0},"transforms":[{}]})",
-                           R"({"sourceNumber":0,"transforms":[{}]})",
-                           R"({"sourceNumber":201,"transforms":[{}]})",
-                           R"({"lens":{"pinholeFocalLength":-5},"transforms":[{}]})",
-                           R"({"lens":[],"transforms":[{}]})"})
+  for (const char* text :
+       {"",
+        "{",
+        "[]",
+        "7",
+        "null",
+        R"({"transforms":[]})",
+        R"({"transforms":[7]})",
+        R"({"transforms":{}})",
+        R"({"transforms":[{"translation":{"x":NaN,"y":0,"z":0}}]})",
+        R"({"transforms":[{"translation":{"x":1e999,"y":0,"z":0}}]})",
+        R"({"transforms":[{"translation":{"x":1e7,"y":0,"z":0}}]})",
+        R"({"transforms":[{"translation":{"x":"1","y":0,"z":0}}]})",
+        R"({"transforms":[{"translation":{"x":1,"y":0}}]})",
+        R"({"transforms":[{"rotation":{"pan":1e30,"tilt":0,"roll":0}}]})",
+        R"({"transforms":[{"scale":{"x":1e300,"y":0,"z":0}}]})",
+        R"({"lens":{"pinholeFocalLength":0},"transforms":[{}]})",
+        R"({"sourceNumber":0,"transforms":[{}]})",
+        R"({"timing":{"sampleTimestamp":{"seconds":-1,"nanoseconds":0}},"transforms":[{}]})",
+        R"({"timing":{"sampleTimestamp":7},"transforms":[{}]})",
+        R"({"sourceNumber":201,"transforms":[{}]})",
+        R"({"lens":{"pinholeFocalLength":-5},"transforms":[{}]})",
+        R"({"lens":[],"transforms":[{}]})"})
     wrong.push_back(datagram(text));
   for (const Bytes& bytes : wrong) {
     const auto taken = reader.take(bytes);
@@ -304,51 +310,67 @@ TEST(Tracking, OptionsNameProtocolAndAddress) {
   }
 }
 
-TEST(Tracking, TheFreshestPacketIsThePoseAndMalformedOnesChangeNothing) {
+TEST(Tracking, APoseGoesThroughBothProtocols) {
+  for (const Vec3d& turn : {Vec3d(0, 0, 0), Vec3d(30, -20, 10), Vec3d(-170, 80, 175), Vec3d(179, -89, -90)}) {
+    TrackedCamera camera;
+    camera.position_m = {12.25, -3.5, 1.71875};
+    camera.stage_from_camera = rotation_from_pan_tilt_roll(turn.x(), turn.y(), turn.z());
+    const auto freed_packet = parse_freed(freed_message({3, camera, 7, 9}));
+    ASSERT_TRUE(freed_packet.ok()) << freed_packet.error().message;
+    EXPECT_EQ(freed_packet->camera_id, 3);
+    EXPECT_EQ(freed_packet->zoom, 7u);
+    EXPECT_EQ(freed_packet->focus, 9u);
+    EXPECT_LE((freed_packet->camera.position_m - camera.position_m).norm(), 1e-12);
+    // Three angles to half a step of 1/32768°.
+    EXPECT_LE((freed_packet->camera.stage_from_camera - camera.stage_from_camera).norm(), 2e-6);
+    camera.sampled_ns = 1'700'000'000'123'456'789;
+    OpenTrackIoReader reader;
+    const auto sample = reader.take(opentrackio_datagram(camera, 65535));
+    ASSERT_TRUE(sample.ok()) << sample.error().message;
+    ASSERT_TRUE(sample->has_value());
+    EXPECT_EQ((*sample)->position_m, camera.position_m);
+    EXPECT_LE(((*sample)->stage_from_camera - camera.stage_from_camera).norm(), 1e-12);
+    EXPECT_EQ((*sample)->sampled_ns, camera.sampled_ns);
+    const ProbePose pose = pose_from_tracked(camera);
+    const TrackedCamera again = tracked_from_pose(pose);
+    EXPECT_LE((again.position_m - camera.position_m).norm(), 1e-12);
+    EXPECT_LE((again.stage_from_camera - camera.stage_from_camera).norm(), 1e-12);
+  }
+}
+
+TEST(Tracking, StraightUpThePanIsTheWholeTurn) {
+  const PanTiltRoll turn = pan_tilt_roll_from(rotation_from_pan_tilt_roll(20, 90, 0));
+  EXPECT_NEAR(turn.pan_deg, 20, 1e-9);
+  EXPECT_NEAR(turn.tilt_deg, 90, 1e-6);
+  EXPECT_EQ(turn.roll_deg, 0);
+}
+
+TEST(Tracking, AReceivedPacketIsStampedWhenItArrivedNotWhenItIsRead) {
   TrackingOptions options;
-  options.protocol = TrackingProtocol::freed;
   options.address = {"127.0.0.1", 0};
-  options.freed_mm_per_unit = 0.01;
-  options.sensor_height_mm = 20;
-  auto stream = TrackingStream::open(options);
-  ASSERT_TRUE(stream.ok()) << stream.error().message;
-  EXPECT_FALSE(stream->update());
-  EXPECT_FALSE(stream->camera());
+  auto receiver = TrackingReceiver::open(options);
+  ASSERT_TRUE(receiver.ok()) << receiver.error().message;
+  EXPECT_FALSE(receiver->next().has_value());
   const int sender = ::socket(AF_INET, SOCK_DGRAM, 0);
   sockaddr_in to{};
   to.sin_family = AF_INET;
-  to.sin_port = htons(stream->port());
+  to.sin_port = htons(receiver->port());
   to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  const auto send = [&](const Bytes& bytes) {
-    ::sendto(sender, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to);
-  };
-  // Loopback delivers in order before sendto returns.
-  send(freed(0, 0, 0, {1000, 0, 0}, 1000));
-  send(freed(0, 0, 0, {2000, 0, 0}, 2500));
-  send({1, 2, 3});
-  EXPECT_TRUE(stream->update());
-  ASSERT_TRUE(stream->camera());
-  EXPECT_DOUBLE_EQ(stream->camera()->position_m.x(), 2);
-  EXPECT_DOUBLE_EQ(*stream->camera()->focal_length_mm, 25);
-  EXPECT_EQ(stream->malformed(), 1u);
-  send({});
-  EXPECT_FALSE(stream->update());
-  EXPECT_DOUBLE_EQ(stream->camera()->position_m.x(), 2) << "the last pose is kept";
-  EXPECT_EQ(stream->malformed(), 2u);
+  const Bytes bytes = opentrackio_datagram({}, 1);
+  const auto now_ns = [] { return std::chrono::steady_clock::now().time_since_epoch().count(); };
+  const auto before = now_ns();
+  ::sendto(sender, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to);
+  const auto sent = now_ns();
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const auto arrival = receiver->next(std::chrono::seconds(5));
   ::close(sender);
-}
-
-TEST(Tracking, APortThatIsTakenIsAFailureThatNamesIt) {
-  TrackingOptions options;
-  options.address = {"127.0.0.1", 0};
-  auto first = TrackingStream::open(options);
-  ASSERT_TRUE(first.ok());
-  options.address.port = first->port();
-  const auto second = TrackingStream::open(options);
-  ASSERT_FALSE(second.ok());
-  EXPECT_EQ(second.error().kind, ErrorKind::failed);
-  EXPECT_NE(second.error().message.find(std::to_string(first->port())), std::string::npos);
+  ASSERT_TRUE(arrival.has_value());
+  EXPECT_EQ(arrival->sender, "127.0.0.1");
+  ASSERT_TRUE(arrival->camera.ok());
+  constexpr std::int64_t kClocks_ns = 50'000'000;  // read one after the other, on a busy machine
+  EXPECT_GE(arrival->arrived_mono_ns, before - kClocks_ns);
+  EXPECT_LE(arrival->arrived_mono_ns, sent + kClocks_ns);
 }
 
 }  // namespace
-}  // namespace lightwell::render
+}  // namespace lightwell

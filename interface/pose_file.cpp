@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "interface/pose_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <deque>
+
+#include "interface/atomic_file.h"
+#include "interface/csv_table.h"
+
+namespace lightwell {
+namespace {
+
+constexpr double kFarthest_m = 1e5;
+constexpr double kMostTime_ns = 9.2e18;  // 64 bits hold a little more
+constexpr const char* kTimes = "a whole number from 0 to 9200000000000000000 nanoseconds";
+constexpr std::array<const char*, 4> kTurn = {"qx", "qy", "qz", "qw"};
+constexpr double kUnitWithin = 0.01;  // of a quaternion's length: rounded to three digits it still is one
+constexpr std::int64_t kDelayWindow_ns = 5'000'000'000;
+
+// Exactly: a double would lose nanoseconds after a hundred days.
+Result<std::int64_t> nanoseconds(const CsvTable& table, std::size_t row, std::string_view column) {
+  if (const auto number = table.number(row, column, 0, kMostTime_ns, kTimes); !number) return number.error();
+  const std::string text = table.text(row, column);
+  std::int64_t value = 0;
+  const auto [stop, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failure != std::errc() || stop != text.data() + text.size())
+    return Error{ErrorKind::bad_input, table.place(row) + ": " + std::string(column) + " = " +
+                                           text.substr(0, 40) + ": allowed " + kTimes};
+  return value;
+}
+
+Result<Vec3d> position(const CsvTable& table, std::size_t row) {
+  Vec3d at;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto value = table.number(row, std::string_view("xyz").substr(static_cast<std::size_t>(axis), 1),
+                                    -kFarthest_m, kFarthest_m, "-100000 to 100000 metres");
+    if (!value) return value.error();
+    at[axis] = *value;
+  }
+  return at;
+}
+
+Result<Eigen::Quaterniond> turn(const CsvTable& table, std::size_t row) {
+  Eigen::Vector4d q;
+  for (int i = 0; i < 4; ++i) {
+    const auto value =
+        table.number(row, kTurn[static_cast<std::size_t>(i)], -1 - kUnitWithin, 1 + kUnitWithin, "-1 to 1");
+    if (!value) return value.error();
+    q[i] = *value;
+  }
+  if (!(std::abs(q.norm() - 1) <= kUnitWithin))
+    return Error{ErrorKind::bad_input, table.place(row) + ": (qx, qy, qz, qw) has the length " +
+                                           std::to_string(q.norm()) + ": allowed 0.99 to 1.01"};
+  return Eigen::Quaterniond(q.normalized());  // x, y, z, w
+}
+
+// Whether the columns of a turn are there; all or none.
+Result<bool> has_turns(const CsvTable& table) {
+  if (std::none_of(kTurn.begin(), kTurn.end(), [&](const char* column) { return table.has(column); }))
+    return false;
+  if (const Status all = table.require({"qx", "qy", "qz", "qw"}); !all) return all.error();
+  return true;
+}
+
+Error not_rising(const CsvTable& table, std::size_t row, std::string_view column, std::int64_t value,
+                 std::int64_t before) {
+  return {ErrorKind::bad_input, table.place(row) + ": " + std::string(column) + " = " +
+                                    std::to_string(value) + ": allowed above " + std::to_string(before) +
+                                    ", that of the line before"};
+}
+
+// Arrivals less samples: the least of a window around each pose, added to its sample's time.
+void use_tracker_clock(std::vector<TimedPose>& poses, const std::vector<std::int64_t>& samples) {
+  std::vector<std::int64_t> delay(poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) delay[i] = poses[i].time_ns - samples[i];
+  std::deque<std::size_t> least;  // of the window, rising from the front
+  std::size_t end = 0, begin = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    for (; end < poses.size() && samples[end] - samples[i] <= kDelayWindow_ns; ++end) {
+      while (!least.empty() && delay[least.back()] >= delay[end]) least.pop_back();
+      least.push_back(end);
+    }
+    for (; samples[i] - samples[begin] > kDelayWindow_ns; ++begin)
+      if (least.front() == begin) least.pop_front();
+    poses[i].time_ns = samples[i] + delay[least.front()];
+  }
+}
+
+bool rises(const std::vector<TimedPose>& poses) {
+  return std::adjacent_find(poses.begin(), poses.end(), [](const TimedPose& a, const TimedPose& b) {
+           return a.time_ns >= b.time_ns;
+         }) == poses.end();
+}
+
+}  // namespace
+
+Result<PoseFile> parse_poses(std::string_view text, const std::string& file) {
+  const auto table = CsvTable::parse(text, file);
+  if (!table) return table.error();
+  if (const Status required = table->require({"time_ns", "x", "y", "z"}); !required) return required.error();
+  const auto turns = has_turns(*table);
+  if (!turns) return turns.error();
+  if (table->rows() == 0)
+    return Error{ErrorKind::bad_input, file + ": has no poses: allowed 1 line or more of time_ns,x,y,z"};
+  PoseFile out;
+  out.has_turns = *turns;
+  std::vector<std::int64_t> samples;
+  for (std::size_t row = 0; row < table->rows(); ++row) {
+    const auto time = nanoseconds(*table, row, "time_ns");
+    if (!time) return time.error();
+    if (row > 0 && *time <= out.poses.back().time_ns)
+      return not_rising(*table, row, "time_ns", *time, out.poses.back().time_ns);
+    const auto at = position(*table, row);
+    if (!at) return at.error();
+    TimedPose pose{*time, {*at, Eigen::Quaterniond::Identity()}};
+    if (*turns) {
+      const auto turned = turn(*table, row);
+      if (!turned) return turned.error();
+      pose.pose.world_from_probe = *turned;
+    }
+    if (!table->text(row, "sample_ns").empty()) {
+      const auto sample = nanoseconds(*table, row, "sample_ns");
+      if (!sample) return sample.error();
+      if (!samples.empty() && *sample <= samples.back())
+        return not_rising(*table, row, "sample_ns", *sample, samples.back());
+      samples.push_back(*sample);
+    }
+    out.poses.push_back(pose);
+    out.lines.push_back(table->line(row));
+  }
+  if (samples.size() == out.poses.size()) {
+    std::vector<TimedPose> by_tracker = out.poses;
+    use_tracker_clock(by_tracker, samples);
+    out.by_tracker_clock = rises(by_tracker);  // a clock that was set meanwhile is no clock
+    if (out.by_tracker_clock) out.poses = std::move(by_tracker);
+  }
+  return out;
+}
+
+Result<PoseFile> read_poses(const std::filesystem::path& file) {
+  const auto text = read_text_file(file);
+  if (!text) return text.error();
+  return parse_poses(*text, file.string());
+}
+
+Result<PoseFileWriter> PoseFileWriter::create(const std::filesystem::path& file, bool with_sample_ns) {
+  std::FILE* stream = std::fopen(file.c_str(), "wex");
+  if (stream == nullptr)
+    return Error{ErrorKind::failed, errno == EEXIST
+                                        ? file.string() + ": exists already and is not overwritten"
+                                        : file.string() + ": cannot write: " + std::strerror(errno)};
+  PoseFileWriter writer(file, stream, with_sample_ns);
+  std::fputs(with_sample_ns ? "time_ns,x,y,z,qx,qy,qz,qw,sample_ns\n" : "time_ns,x,y,z,qx,qy,qz,qw\n",
+             stream);
+  return writer;
+}
+
+Status PoseFileWriter::write(const TimedPose& pose, std::optional<std::int64_t> sample_ns) {
+  const Vec3d& at = pose.pose.position_m;
+  const Eigen::Quaterniond& q = pose.pose.world_from_probe;
+  std::FILE* out = stream_.get();
+  const bool shorter =
+      std::fprintf(out, "%lld,%.7f,%.7f,%.7f,%.9f,%.9f,%.9f,%.9f", static_cast<long long>(pose.time_ns),
+                   at.x(), at.y(), at.z(), q.x(), q.y(), q.z(), q.w()) < 0 ||
+      (with_sample_ns_ &&
+       std::fprintf(out, ",%s", sample_ns ? std::to_string(*sample_ns).c_str() : "") < 0) ||
+      std::fputc('\n', out) == EOF || std::fflush(out) != 0;
+  if (!shorter) return {};
+  return Error{ErrorKind::failed, file_.string() + ": cannot write: " + std::strerror(errno)};
+}
+
+}  // namespace lightwell

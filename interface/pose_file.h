@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lighting/field/pose_track.h"
+#include "lighting/result.h"
+
+namespace lightwell {
+
+// Poses of a probe beside its take, CSV: time_ns (CLOCK_MONOTONIC, as the frames' times), x, y, z (metres, world), and
+// where the probe turns qx, qy, qz, qw (a unit quaternion, world from probe); sample_ns where the tracker stamps its
+// samples by a clock of its own (docs/conventions.md).
+struct PoseFile {
+  std::vector<TimedPose> poses;   // one or more, times rising
+  std::vector<int> lines;         // of the file, for messages
+  bool has_turns = false;         // else all poses stand as the world does
+  bool by_tracker_clock = false;  // times are the tracker's, brought to ours
+};
+
+// bad_input that names file, line, column, value and range: no poses, a column missing, numbers that are none or out of
+// range, times that do not rise, a quaternion that is no turn.
+// With sample_ns in every line, times are the tracker's own, moved by the least delay with which poses arrived around
+// them (±5 s): the network's delays vary, the tracker's sampling does not.
+Result<PoseFile> read_poses(const std::filesystem::path& file);
+Result<PoseFile> parse_poses(std::string_view text, const std::string& file);
+
+// Writes poses as they come, flushed line by line: what was written is whole however the program ends.
+class PoseFileWriter {
+ public:
+  // failed: the file exists (it is not overwritten), or cannot be written.
+  static Result<PoseFileWriter> create(const std::filesystem::path& file, bool with_sample_ns);
+  Status write(const TimedPose& pose, std::optional<std::int64_t> sample_ns = std::nullopt);
+
+ private:
+  struct Close {
+    void operator()(std::FILE* f) const { std::fclose(f); }
+  };
+  PoseFileWriter(std::filesystem::path file, std::FILE* stream, bool with_sample_ns)
+      : file_(std::move(file)), stream_(stream), with_sample_ns_(with_sample_ns) {}
+  std::filesystem::path file_;
+  std::unique_ptr<std::FILE, Close> stream_;
+  bool with_sample_ns_;
+};
+
+}  // namespace lightwell
