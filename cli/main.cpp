@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
 #include <exception>
 #include <new>
 
@@ -16,6 +19,7 @@ std::string unknown_command(const CLI::App& app) {
 }
 
 int run(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("lightwell"));  // stdout is for results
   CLI::App app{"Lightwell: measure the light on set, relight virtual objects with it", "lightwell"};
   app.require_subcommand(1);
   app.set_version_flag("--version", "lightwell 0.1.0");

@@ -6,11 +6,14 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/command.h"
+#include "daemon/record/pose_recorder.h"
 #include "daemon/record/take_name.h"
 #include "interface/atomic_file.h"
 #include "interface/option_range.h"
+#include "interface/printable.h"
 #include "interface/same_file.h"
 
 namespace lightwell::cli {
@@ -19,14 +22,26 @@ namespace {
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
 
-void print(const RecordOptions& options, const Recorded& recorded) {
+// What stands in the pose file beside the take.
+struct RecordedPoses {
+  std::string file;
+  PoseRecorder::Stats stats;
+};
+
+void print(const RecordOptions& options, const Recorded& recorded,
+           const std::optional<RecordedPoses>& poses) {
   const std::string file = recorded.file.string();
   if (options.json) {
-    const nlohmann::ordered_json json = {{"schema", "lightwell.record/1"},
-                                         {"file", file},
-                                         {"frames", recorded.frames},
-                                         {"dropped", recorded.dropped},
-                                         {"bytes", recorded.bytes}};
+    nlohmann::ordered_json json = {{"schema", "lightwell.record/1"},
+                                   {"file", file},
+                                   {"frames", recorded.frames},
+                                   {"dropped", recorded.dropped},
+                                   {"bytes", recorded.bytes}};
+    if (poses)
+      json["poses"] = {{"file", poses->file},
+                       {"poses", poses->stats.poses},
+                       {"malformed", poses->stats.malformed},
+                       {"out_of_order", poses->stats.out_of_order}};
     std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
     return;
   }
@@ -34,6 +49,46 @@ void print(const RecordOptions& options, const Recorded& recorded) {
               static_cast<double>(recorded.bytes) * 1e-6);
   if (recorded.dropped > 0) std::printf(", %llu dropped", static_cast<unsigned long long>(recorded.dropped));
   std::printf("%s\n", recorded.file == options.out ? "" : " (in the daemon's record directory)");
+  if (poses)
+    std::printf("%s: %llu poses\n", poses->file.c_str(), static_cast<unsigned long long>(poses->stats.poses));
+}
+
+Result<Recorded> record(const RecordOptions& options) {
+  return options.source.empty() ? record_through_daemon(options, interrupted)
+                                : record_from_source(options, interrupted);
+}
+
+void complain(const std::string& what) {
+  std::fprintf(stderr, "lightwell: %s\n", printable(what).c_str());
+}
+
+// The take and, from before its first frame until after its last, what the tracker sends.
+int record_with_tracker(const RecordOptions& options) {
+  const auto tracking = parse_tracking(options.tracking);
+  if (!tracking) return fail(tracking.error());
+  const auto daemon = parse_host_port(options.daemon);
+  if (options.source.empty() && (!daemon || !is_loopback(daemon->host)))
+    return fail(usage("--tracking with --daemon " + options.daemon +
+                      ": allowed a daemon on this machine, whose clock stamps the poses too"));
+  RecordedPoses poses{poses_beside(options.out).string(), {}};
+  auto recorder = PoseRecorder::start(*tracking, poses.file);
+  if (!recorder) return fail(recorder.error());
+  const auto recorded = record(options);
+  const Status written = (*recorder)->stop();
+  poses.stats = (*recorder)->stats();
+  std::error_code ignored;
+  if (poses.stats.poses == 0 || (!recorded && !std::filesystem::exists(options.out, ignored)))
+    std::filesystem::remove(poses.file, ignored);
+  if (!recorded) return fail(recorded.error());
+  if (poses.stats.malformed > 0)
+    complain(
+        std::to_string(poses.stats.malformed) +
+        " packets of the tracker were malformed and left out, the first: " + *poses.stats.first_malformed);
+  if (poses.stats.poses == 0)
+    return fail({ErrorKind::failed, "--tracking " + options.tracking + ": no pose came; the take " +
+                                        recorded->file.string() + " is without"});
+  print(options, *recorded, poses);
+  return written ? 0 : fail(written.error());
 }
 
 int run(const RecordOptions& options) {
@@ -53,10 +108,13 @@ int run(const RecordOptions& options) {
       return fail(other.error());
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
-  const auto recorded = options.source.empty() ? record_through_daemon(options, interrupted)
-                                               : record_from_source(options, interrupted);
+  if (!options.tracking.empty()) return record_with_tracker(options);
+  const auto recorded = record(options);
   if (!recorded) return fail(recorded.error());
-  print(options, *recorded);
+  std::optional<RecordedPoses> known;
+  if (recorded->known_poses > 0)
+    known = {poses_beside(options.out).string(), {.poses = recorded->known_poses}};
+  print(options, *recorded, known);
   return 0;
 }
 
@@ -85,6 +143,10 @@ Command add_record(CLI::App& app) {
   command->add_option("--codec", arguments->codec, "raw, or ffv1: a third of the size, up to a core of work")
       ->check(CLI::IsMember({"raw", "ffv1"}));
   command->add_option("--calibration", options.calibration, "Folder to attach to a take made with --source");
+  command->add_option(
+      "--tracking", options.tracking,
+      "Write what a tracker sends beside the take (take.poses.csv): opentrackio:ADDRESS:PORT or "
+      "freed:ADDRESS:PORT, of this machine or a multicast group");
   command->add_option("--daemon", options.daemon, "ADDRESS:PORT of the daemon");
   command->add_flag("--json", options.json, "Machine-readable result on stdout");
   return {command, [arguments] {

@@ -17,6 +17,7 @@ struct RecordOptions {
   std::string source;       // empty: through a daemon
   std::string calibration;  // folder; empty: what the source brings along
   std::string daemon = "127.0.0.1:8650";
+  std::string tracking;  // opentrackio:ADDRESS:PORT or freed:ADDRESS:PORT; empty: no tracker
   RecordingCodec codec = RecordingCodec::raw;
   bool json = false;
 };
@@ -27,6 +28,7 @@ struct Recorded {
   std::uint64_t frames = 0;
   std::uint64_t dropped = 0;  // frames that came and were not written
   std::uint64_t bytes = 0;
+  std::uint64_t known_poses = 0;  // of a simulated source's frames, in the pose file beside the take
 };
 
 // Both end early, keeping what was recorded, where `interrupted` becomes true.

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "cli/progress.h"
 #include "cli/record.h"
 #include "daemon/capture/capture_source.h"
 #include "daemon/capture/recording_source.h"
+#include "daemon/record/pose_recorder.h"
 #include "daemon/record/recorder.h"
 #include "interface/calibration_io.h"
 #include "interface/part_file.h"
@@ -66,7 +68,33 @@ Result<FrameLease> first_frame(CaptureSource& source, const RecordOptions& optio
   return failed(options, "nothing recorded, no frame came: " + source.describe());
 }
 
-void take_frames(CaptureSource& source, Recorder& recorder, const RecordOptions& options,
+// The exact poses of frames whose source knows them, beside the take.
+class KnownPoses {
+ public:
+  static Result<KnownPoses> create(const FrameInfo& first, const RecordOptions& options) {
+    KnownPoses poses;
+    if (!first.probe_position_m || !options.tracking.empty()) return poses;
+    auto writer = PoseFileWriter::create(poses_beside(options.out), false);
+    if (!writer) return writer.error();
+    poses.writer_ = *std::move(writer);
+    return poses;
+  }
+  void add(const FrameInfo& frame) {
+    if (!writer_ || !frame.probe_position_m || !written_) return;
+    written_ =
+        writer_->write({frame.capture_mono_ns, {*frame.probe_position_m, Eigen::Quaterniond::Identity()}});
+    if (written_) ++count_;
+  }
+  [[nodiscard]] const Status& written() const { return written_; }
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+
+ private:
+  std::optional<PoseFileWriter> writer_;
+  Status written_;
+  std::uint64_t count_ = 0;
+};
+
+void take_frames(CaptureSource& source, Recorder& recorder, KnownPoses& poses, const RecordOptions& options,
                  const std::atomic<bool>& interrupted) {
   const auto begin = Clock::now();
   const auto end =
@@ -77,8 +105,10 @@ void take_frames(CaptureSource& source, Recorder& recorder, const RecordOptions&
     progress.done(
         static_cast<std::size_t>(std::chrono::duration_cast<std::chrono::milliseconds>(now - begin).count()));
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - now);
-    if (const FrameLease lease = source.wait(std::min(left, std::chrono::milliseconds(100))))
+    if (const FrameLease lease = source.wait(std::min(left, std::chrono::milliseconds(100)))) {
       recorder.offer(lease.info(), lease.bytes());
+      poses.add(lease.info());
+    }
   }
 }
 
@@ -95,15 +125,20 @@ Result<Recorded> record_from_source(const RecordOptions& options, const std::ato
 
   PartFile part(options.out);
   Recorder recorder(options.out.parent_path());
+  KnownPoses poses;
   {
     const auto first = first_frame(source, options, interrupted);
     if (!first) return first.error();
     const RecordingHeader header = header_for(first->info(), source, options, std::move(*calibration));
     if (Status status = recorder.start_at(part.path(), header); !status)
       return part.about_out(status.error());
+    auto known = KnownPoses::create(first->info(), options);
+    if (!known) return known.error();
+    poses = *std::move(known);
     recorder.offer(first->info(), first->bytes());
+    poses.add(first->info());
   }
-  take_frames(source, recorder, options, interrupted);
+  take_frames(source, recorder, poses, options, interrupted);
   const std::uint64_t skipped = source.counters().skipped;
   source.stop();
   const Status closed = recorder.stop();
@@ -114,7 +149,8 @@ Result<Recorded> record_from_source(const RecordOptions& options, const std::ato
   if (!closed)
     return failed(options, "holds " + std::to_string(stats.frames) + " frames only, " +
                                part.about_out(closed.error()).message);
-  return Recorded{options.out, stats.frames, stats.dropped + skipped, stats.bytes};
+  if (!poses.written()) return poses.written().error();
+  return Recorded{options.out, stats.frames, stats.dropped + skipped, stats.bytes, poses.count()};
 }
 
 }  // namespace lightwell::cli

@@ -14,6 +14,7 @@
 #include "interface/timecode.h"
 #include "lighting/frame_format.h"
 #include "lighting/result.h"
+#include "lighting/vector.h"
 
 namespace lightwell {
 
@@ -28,8 +29,10 @@ struct FrameInfo {
   double gain_db = 0;
   float temperature_c = 0;  // NaN where the camera has none
   std::optional<Timecode>
-      timecode{};        // of the production's frame in which its middle lies; empty: none is known
-  bool complete = true;  // false: packets missing, bytes undefined; never given to the radiometer
+      timecode{};  // of the production's frame in which its middle lies; empty: none is known
+  std::optional<Vec3d>
+      probe_position_m{};  // world, at capture_mono_ns; from simulated sources whose probe moves
+  bool complete = true;    // false: packets missing, bytes undefined; never given to the radiometer
 };
 
 // A frame in the source's own buffer; the buffer goes back when the lease ends. Movable, not copyable.

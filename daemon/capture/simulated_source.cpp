@@ -157,8 +157,9 @@ class SimulatedSource final : public CaptureSource {
     const double end_s = (static_cast<double>(tick) + 1) / setup_.rate_hz;
     const FrameFormat& format = setup_.model.format;
     const double exposure_us = exposure_us_;
-    generator.render(end_s, exposure_us, tick, format.pixel_format, pool_->buffer(slot));
     FrameInfo info;
+    info.probe_position_m =
+        generator.render(end_s, exposure_us, tick, format.pixel_format, pool_->buffer(slot)).position_m;
     info.format = format;
     info.sequence = tick;
     info.capture_mono_ns = ns_of(due) - std::llround(exposure_us * 500);

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <ctime>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 
 #include "daemon/simulator/gige_camera.h"
 #include "daemon/simulator/probe_setup.h"
+#include "daemon/simulator/tracker_output.h"
 #include "daemon/simulator/truth_file.h"
 #include "interface/calibration_io.h"
 #include "interface/option_range.h"
@@ -29,7 +31,9 @@ struct CommandLine {
   ProbeOptions probe;
   GigeCameraOptions camera;
   std::string size = "640x480";
-  std::string truth, calibration_folder;
+  std::string truth, calibration_folder, tracking_out;
+  TrackerOptions tracker;
+  double tracking_lag_ms = 0;
   double seconds = 0;        // 0: until a signal
   std::uint64_t frames = 0;  // 0: any number
 };
@@ -76,6 +80,17 @@ void declare(CLI::App& app, CommandLine& c) {
   app.add_option("--truth", c.truth, "File for what every frame shows, a JSON line a frame");
   app.add_option("--write-calibration", c.calibration_folder,
                  "Folder for the camera's exact response.json, lens.json and flat.json");
+  auto* tracking =
+      app.add_option("--tracking-out", c.tracking_out,
+                     "Send the probe's exact pose as a tracker does, opentrackio:ADDRESS:PORT or "
+                     "freed:ADDRESS:PORT (--scenario walk)");
+  app.add_option("--tracking-lag", c.tracking_lag_ms, "Milliseconds by which each pose is sent late")
+      ->check(numbers_from(0, 1000, "0 to 1000 ms"))
+      ->needs(tracking);
+  app.add_option("--tracking-rate", c.tracker.rate_hz, "Poses a second")
+      ->check(numbers_from(1, 1000, "1 to 1000 Hz"))
+      ->capture_default_str()
+      ->needs(tracking);
   app.add_option("--seconds", c.seconds, "End after so many seconds [never]");
   app.add_option("--frames", c.frames, "End when so many frames have left [never]");
 }
@@ -92,14 +107,22 @@ Status check(CommandLine& c) {
   if (!(c.probe.rate_hz >= 0.1))
     return Error{ErrorKind::usage,
                  "--rate = " + std::to_string(c.probe.rate_hz) + ": allowed 0.1 to 1000 Hz"};
+  if (!c.tracking_out.empty()) {
+    const auto to = parse_tracking(c.tracking_out, "--tracking-out");
+    if (!to) return to.error();
+    c.tracker.to = *to;
+    c.tracker.lag_s = c.tracking_lag_ms * 1e-3;
+  }
   return {};
 }
 
 // What happens to frames that left; the first failure ends the program.
 class Told {
  public:
-  explicit Told(std::optional<TruthFile> truth) : truth_(std::move(truth)) {}
+  Told(std::optional<TruthFile> truth, std::unique_ptr<TrackerOutput> tracker)
+      : truth_(std::move(truth)), tracker_(std::move(tracker)) {}
   void frame(const SentFrame& sent) {
+    if (tracker_) tracker_->frame(sent);
     if (!truth_ || failed_.load()) return;
     if (const Status status = truth_->write(sent); !status) {
       error_ = status.error();
@@ -111,6 +134,7 @@ class Told {
 
  private:
   std::optional<TruthFile> truth_;
+  std::unique_ptr<TrackerOutput> tracker_;
   Error error_;
   std::atomic<bool> failed_{false};
 };
@@ -165,7 +189,13 @@ int run(CommandLine& c) {
     if (!created) return fail(created.error());
     truth = *std::move(created);
   }
-  Told told(std::move(truth));
+  std::unique_ptr<TrackerOutput> tracker;
+  if (!c.tracking_out.empty()) {
+    auto started = TrackerOutput::start(c.tracker, setup->scene);
+    if (!started) return fail(started.error());
+    tracker = *std::move(started);
+  }
+  Told told(std::move(truth), std::move(tracker));
   auto camera = GigeCamera::start(c.camera, *setup, [&](const SentFrame& frame) { told.frame(frame); });
   if (!camera) return fail(camera.error());
   announce(c, *setup);

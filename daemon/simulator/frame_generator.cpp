@@ -74,6 +74,7 @@ FrameTruth FrameGenerator::render(double end_s, double exposure_us, std::uint64_
 
   FrameTruth truth;
   truth.position_m = moment.position_m;
+  truth.scene_s = end_s - exposure_us * 0.5e-6;
   for (const SceneMoment::Part& part : moment.parts)
     truth.total_illuminance += part.weight * seen(layer(part.layer).illuminance);
   for (DiscLight light : moment.lights) {

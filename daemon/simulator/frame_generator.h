@@ -23,6 +23,7 @@ struct FrameTruth {
                                           // monochrome camera, which can see no more
   std::vector<DiscLight> lights;          // those in closed form, the part above the horizon; same for colour
   std::optional<Vec3d> position_m;
+  double scene_s = 0;  // the scene's time at the middle of the exposure
 };
 
 // A scene through lens and sensor. One thread; pure otherwise: equal arguments give equal bytes.
