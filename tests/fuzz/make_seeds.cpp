@@ -83,6 +83,19 @@ void patches(const std::filesystem::path& folder) {
   write(folder / "codes.csv", "code_r,code_g,code_b,X,Y,Z,use\n500,1000,800,95,100,108,fit\n");
 }
 
+void photometric(const std::filesystem::path& folder) {
+  write(
+      folder / "lamp.ies",
+      "IESNA:LM-63-2002\n[LUMINAIRE] Spot\nTILT=INCLUDE\n1\n2\n0 90\n1 0.8\n1 -1 1 3 2 1 2 .1 .1 0\n1 1 40\n"
+      "0 45 90\n0 90\n30 20 10\n30 15 5\n");
+  std::string flood =
+      "Maker\n1\n4\n4\n90\n2\n90\nreport\nFlood\n1\nf."
+      "ldt\ndate\n500\n0\n80\n400\n0\n1\n2\n3\n4\n100\n50\n1\n0\n1\n1\n"
+      "LED\n2000\n4000\n80\n25\n";
+  for (int i = 0; i < 10; ++i) flood += "0.5\n";
+  write(folder / "lamp.ldt", flood + "0\n90\n180\n270\n0\n90\n100\n50\n80\n40\n");
+}
+
 void imports(const std::filesystem::path& folder) {
   write(folder / "lens_import_opencv/a.yaml",
         "%YAML:1.0\n---\nimage_width: 848\nimage_height: 800\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   "
@@ -265,6 +278,7 @@ int main(int argc, char** argv) {
   calibration_files(folder / "calibration_files");
   corners(folder / "corners");
   patches(folder / "patches");
+  photometric(folder / "photometric");
   imports(folder);
   radiance(folder / "radiance_hdr");
   scenes(folder / "gltf");
