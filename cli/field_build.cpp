@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <sched.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -16,7 +18,10 @@
 #include "cli/command.h"
 #include "cli/number_list.h"
 #include "cli/progress.h"
+#include "cli/stop_notice.h"
 #include "field/field_builder.h"
+#include "field/field_state.h"
+#include "field/launched_ranks.h"
 #include "field/probe_list.h"
 #include "interface/atomic_file.h"
 #include "interface/calibration_io.h"
@@ -37,6 +42,7 @@ struct BuildArguments {
   std::string probes, grid, bounds, out;
   std::string method = "best", projection = "latlong", lens;
   int degree = 4, directions = 0, threads = 0;
+  double save_every_s = 30;
   double max_error = 0, ball_radius_m = 0, blind_cone_deg = 2.1;
   std::optional<double> camera_distance_m;
   bool json = false;
@@ -96,9 +102,10 @@ std::optional<double> available_memory_bytes() {
   return std::nullopt;
 }
 
-// The sums, OpenVDB's copy of them, and the bytes of the file; what it was before points are left out.
-Status check_memory(const BuildArguments& o, const FieldGrid& grid) {
-  const double needed = FieldSums::bytes_needed(grid, o.degree) * 3.5;
+// The sums twice, or the sums, OpenVDB's copy of them, what it was before points are left out, and the bytes of the file;
+// of other ranks on this machine the sums.
+Status check_memory(const BuildArguments& o, const FieldGrid& grid, int ranks) {
+  const double needed = FieldSums::bytes_needed(grid, o.degree) * (3.5 + ranks - 1);
   const auto available = available_memory_bytes();
   if (!available || needed <= *available) return {};
   char text[200];
@@ -108,15 +115,43 @@ Status check_memory(const BuildArguments& o, const FieldGrid& grid) {
   return usage(text);
 }
 
-// Pictures of a list; says once, for the first, that values were read as 0.
-ProbeTake take_of(const ProbeList& list, std::atomic<bool>& repaired) {
+// This process's share of the machine: where a launcher has bound it to cores, those.
+unsigned default_threads(int ranks) {
+  const unsigned all = std::max(1u, std::thread::hardware_concurrency());
+  cpu_set_t own;
+  const unsigned allowed =
+      ::sched_getaffinity(0, sizeof own, &own) == 0 ? static_cast<unsigned>(CPU_COUNT(&own)) : all;
+  return std::clamp(all / static_cast<unsigned>(ranks), 1u, std::max(1u, allowed));
+}
+
+// The pictures of a list as they are now, and how they are read: what an unfinished build must have come from.
+std::string origin_of(const BuildArguments& o, const ProbeList& list, const std::string& lens) {
+  std::uint64_t mark = fnv1a(lens);
+  char text[200];
+  for (std::size_t i = 0; i < list.files.size(); ++i) {
+    std::error_code absent;  // is said when it is read
+    const auto size = std::filesystem::file_size(list.files[i], absent);
+    const auto time = std::filesystem::last_write_time(list.files[i], absent).time_since_epoch().count();
+    const Vec3d& at = list.positions[i];
+    std::snprintf(text, sizeof text, "%.17g %.17g %.17g %ju %jd ", at.x(), at.y(), at.z(),
+                  static_cast<std::uintmax_t>(size), static_cast<std::intmax_t>(time));
+    mark = fnv1a(list.files[i].string() + '\n', fnv1a(text, mark));
+  }
+  std::snprintf(text, sizeof text, "%s ball %.17g camera %.17g blind %.17g files %016jx",
+                o.projection.c_str(), o.ball_radius_m, o.camera_distance_m.value_or(0), o.blind_cone_deg,
+                static_cast<std::uintmax_t>(mark));
+  return text;
+}
+
+// Pictures of a list; says once that values were read as 0.
+ProbeTake take_of(const ProbeList& list, std::atomic<bool>& repaired, bool speaks) {
   ProbeTake take;
   take.positions = list.positions;
   take.name = [&list](std::size_t i) { return list.files[i].string(); };
-  take.picture = [&list, &repaired](std::size_t i) -> Result<LatLongImage> {
+  take.picture = [&list, &repaired, speaks](std::size_t i) -> Result<LatLongImage> {
     auto environment = read_environment(list.files[i]);
     if (!environment) return environment.error();
-    if (environment->not_finite + environment->negative > 0 && !repaired.exchange(true))
+    if (environment->not_finite + environment->negative > 0 && !repaired.exchange(true) && speaks)
       std::fprintf(
           stderr, "lightwell: %s: values that are negative, NaN or infinite; read as 0, here and in others\n",
           printable(list.files[i].string()).c_str());
@@ -169,43 +204,103 @@ void report(const BuildArguments& o, const ProbeList& list, const FieldBuild& bu
   std::printf("%s\n", json.dump(2).c_str());
 }
 
-int run(const BuildArguments& o) {
-  const auto begin = std::chrono::steady_clock::now();
+struct Prepared {
   FieldBuildOptions options;
+  ProbeList list;
+};
+
+// Everything that can be wrong before the first picture is read.
+Result<Prepared> prepare(const BuildArguments& o, FieldRanks& ranks) {
+  Prepared prepared;
+  FieldBuildOptions& options = prepared.options;
   const auto grid = grid_of(o);
-  if (!grid) return fail(grid.error());
+  if (!grid) return grid.error();
   options.grid = *grid;
   if (o.method != "best" && o.method != "low")
-    return fail(usage("--method is " + o.method + ", allowed: best, low"));
+    return usage("--method is " + o.method + ", allowed: best, low");
   options.method = o.method == "best" ? FieldMethod::best : FieldMethod::low;
   options.degree = o.degree;
   options.directions = o.directions;
   options.threads =
-      o.threads > 0 ? static_cast<unsigned>(o.threads) : std::max(1u, std::thread::hardware_concurrency());
-  if (const Status enough = check_memory(o, *grid); !enough) return fail(enough.error());
+      o.threads > 0 ? static_cast<unsigned>(o.threads) : default_threads(ranks.on_this_machine());
+  if (const Status enough = check_memory(o, *grid, ranks.on_this_machine()); !enough) return enough.error();
   auto projection = projection_of(o);
-  if (!projection) return fail(projection.error());
+  if (!projection) return projection.error();
   options.projection = *std::move(projection);
-  options.scratch_folder = std::filesystem::path(o.out).parent_path();
-  const auto list = read_probe_list(o.probes);
-  if (!list) return fail(list.error());
-  if (const Status other = check_output_is_no_input(o.out, {o.probes}); !other) return fail(other.error());
-  for (const std::string& remark : remarks_on_places(list->positions, *grid))
-    std::fprintf(stderr, "lightwell: %s\n", remark.c_str());
+  auto list = read_probe_list(o.probes);
+  if (!list) return list.error();
+  prepared.list = *std::move(list);
+  if (const Status other = check_output_is_no_input(o.out, {o.probes}); !other) return other.error();
+  std::string lens;
+  if (!o.lens.empty()) {
+    const auto text = read_text_file(o.lens);
+    if (!text) return text.error();
+    lens = *text;
+  }
+  const std::filesystem::path out(o.out);
+  options.scratch_folder = out.parent_path();
+  options.state_name = out.filename().string() + ".part";
+  options.made_from = origin_of(o, prepared.list, lens);
+  options.save_every = std::chrono::seconds(static_cast<int>(o.save_every_s));
+  options.ranks = &ranks;
+  return prepared;
+}
+
+Result<FieldBuild> build(const Prepared& prepared, FieldRanks& ranks) {
+  const bool speaks = ranks.rank() == 0;
+  FieldBuildOptions options = prepared.options;
+  options.remark = [](const std::string& line) {
+    std::fprintf(stderr, "lightwell: %s\n", printable(line).c_str());
+  };
+  if (speaks)
+    for (const std::string& remark : remarks_on_places(prepared.list.positions, options.grid))
+      options.remark(remark);
   std::atomic<bool> repaired = false;
   std::optional<Progress> bar;
-  const auto build = build_field(take_of(*list, repaired), options, [&](std::size_t done, std::size_t total) {
-    if (!bar) bar.emplace(total);
-    bar->done(done);
-  });
+  auto built = build_field(take_of(prepared.list, repaired, speaks), options,
+                           [&](std::size_t done, std::size_t total) {
+                             if (!bar) bar.emplace(total);
+                             bar->done(done);
+                           });
   bar.reset();
-  if (!build) return fail(build.error());
-  if (is_dark(build->field)) std::fprintf(stderr, "lightwell: no probe has any light: the field is dark\n");
-  const auto file = write_field(o.out, build->field, {o.method, o.max_error});
+  const bool said = repaired;
+  if (ranks.any(repaired) && speaks && !said)
+    options.remark("values of pictures that are negative, NaN or infinite; read as 0");
+  if (built && speaks && is_dark(built->field)) options.remark("no probe has any light: the field is dark");
+  return built;
+}
+
+int run_as(const BuildArguments& o, FieldRanks& ranks) {
+  const auto begin = std::chrono::steady_clock::now();
+  const bool speaks = ranks.rank() == 0;
+  const auto prepared = prepare(o, ranks);
+  if (const Status ready = ranks.agree(prepared ? Status() : prepared.error()); !ready)
+    return speaks ? fail(ready.error()) : static_cast<int>(ready.error().kind);
+  const StopNotice notice(prepared->options.scratch_folder / prepared->options.state_name);
+  const auto built = build(*prepared, ranks);
+  if (!built) return speaks ? fail(built.error()) : static_cast<int>(built.error().kind);
+  if (!speaks) return 0;
+  const auto file = write_field(o.out, built->field, {o.method, o.max_error});
   if (!file) return fail(file.error());
+  remove_state(prepared->options);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-  report(o, *list, *build, *file, taken.count());
+  report(o, prepared->list, *built, *file, taken.count());
   return 0;
+}
+
+int run(const BuildArguments& o) {
+  const auto ranks = launched_ranks();
+  if (!ranks) return launched_rank() == 0 ? fail(ranks.error()) : static_cast<int>(ranks.error().kind);
+  if ((*ranks)->count() == 1) return run_as(o, **ranks);
+  try {
+    return run_as(o, **ranks);
+  } catch (const std::exception& error) {  // the others wait for what this one will not do
+    const bool memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+    const int code = fail({ErrorKind::failed, "rank " + std::to_string((*ranks)->rank()) + ": " +
+                                                  (memory ? "not enough memory" : error.what())});
+    (*ranks)->abort(code);
+    return code;
+  }
 }
 
 }  // namespace
@@ -265,9 +360,16 @@ Command add_field_build(CLI::App& field) {
       ->check(numbers_from(0, 1, "0 to 1"))
       ->capture_default_str()
       ->type_name("E");
-  command->add_option("--threads", o->threads, "0: one a core; the result is the same")
+  command->add_option("--threads", o->threads, "0: one a core; the result is the same, also under mpirun")
       ->check(whole_numbers(0, 1024))
       ->capture_default_str();
+  command
+      ->add_option("--save-every", o->save_every_s,
+                   "Seconds between saves of what is summed, beside the output: an interrupted build goes on "
+                   "from there")
+      ->check(numbers_from(0, 86400, "0 to 86400 seconds"))
+      ->capture_default_str()
+      ->type_name("S");
   command->add_option("--out", o->out, "The field, OpenVDB")
       ->required()
       ->check(output_file())

@@ -7,6 +7,7 @@
 #include <new>
 
 #include "cli/command.h"
+#include "field/launched_ranks.h"
 
 namespace {
 
@@ -30,6 +31,9 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    // Of the ranks of a field's build one says what all see.
+    if (app.got_subcommand("field") && lightwell::launched_rank() > 0)
+      return error.get_exit_code() == 0 ? 0 : static_cast<int>(lightwell::ErrorKind::usage);
     const std::string word = unknown_command(app);
     if (error.get_exit_code() != 0 && !word.empty())
       return lightwell::cli::fail(

@@ -5,78 +5,142 @@
 #include <algorithm>
 #include <mutex>
 #include <optional>
+#include <sstream>
+#include <string>
+#include <system_error>
 #include <utility>
 
-#include "field/bucket_file.h"
+#include "field/field_state.h"
 #include "field/parallel_for.h"
+#include "field/sample_store.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::size_t kChunkBytes = std::size_t{32} << 20;  // of pictures' directions on their way to disk
-constexpr std::size_t kHeldOutBuckets = 24;                 // spread over the sphere
+constexpr std::size_t kHeldOutBuckets = 24;  // spread over the sphere
 constexpr std::size_t kHeldOutOfABucket = 4;
 
-// What stands between pictures and sums: one for the length of a build.
+// What stands between pictures and sums: one for the length of a build, on every rank.
 class Builder {
  public:
   Builder(const ProbeTake& take, const FieldBuildOptions& options, const FieldProgress& progress,
-          DirectionBins bins, BucketFile buckets)
+          FieldRanks& ranks, const FieldState& state, const DirectionBins& bins)
       : take_(take),
         options_(options),
         progress_(progress),
-        bins_(std::move(bins)),
-        buckets_(std::move(buckets)) {}
+        ranks_(ranks),
+        state_(state),
+        bins_(bins),
+        store_(state.folder(), state.mark(), take.positions.size(), bins.directions().size()) {}
 
+  // Ranks take chunks in turn, and meet after each so that a bad picture ends the build at once.
   Status sort_pictures(int width, int height) {
-    const std::size_t directions = bins_.directions().size();
-    const std::size_t chunk = std::clamp<std::size_t>(kChunkBytes / (directions * sizeof(Rgb)), 1, 256);
-    std::vector<Rgb> radiance;
-    for (std::size_t first = 0; first < probes(); first += chunk) {
-      const std::size_t count = std::min(chunk, probes() - first);
-      radiance.resize(count * directions);
-      std::optional<Error> error;
-      std::size_t erroneous = probes();
-      std::mutex mutex;
-      parallel_for(count, options_.threads, [&](std::size_t i, unsigned) {
-        const std::span<Rgb> out(radiance.data() + i * directions, directions);
-        const Status cut = cut_picture(first + i, width, height, out);
-        const std::scoped_lock lock(mutex);
-        if (!cut && first + i < erroneous) {  // the first of them, whichever thread was first
-          erroneous = first + i;
-          error = cut.error();
-        }
-      });
-      if (error) return *error;
-      if (const Status written = buckets_.write(first, count, radiance); !written) return written;
-      report(first + count);
+    const std::vector<std::size_t> missing = missing_chunks();
+    Status room;
+    if (ranks_.rank() == 0) room = store_.check_room(missing.size());
+    if (room = ranks_.agree(room); !room) return room;
+    report(probes() - probes_of(missing));
+    for (std::size_t i = 0; i < missing.size(); i += ranks()) {
+      Status sorted;
+      if (i + rank() < missing.size()) sorted = sort_chunk(missing[i + rank()], width, height);
+      if (sorted = ranks_.agree(sorted); !sorted) return sorted;
+      report(probes() - probes_of(std::span(missing).subspan(std::min(i + ranks(), missing.size()))));
     }
     return {};
   }
 
-  // Over how many rays to fit.
-  Status choose_support(FieldBuild& build) {
-    SupportChoice choice;
-    DirectionEstimator estimator(options_.grid, take_.positions, options_.method, 0);
-    const std::size_t step = std::max<std::size_t>(1, buckets_.buckets() / kHeldOutBuckets);
-    for (std::size_t b = step / 2; b < buckets_.buckets(); b += step) {
-      if (const Status loaded = load(b); !loaded) return loaded;
-      const std::size_t within = std::max<std::size_t>(1, width() / kHeldOutOfABucket);
-      for (std::size_t d = 0; d < width(); d += within)
-        estimator.hold_out(bins_.directions()[first_ + d], radiance_of(d), choice);
-    }
-    build.support = choice.best();
-    build.held_out_error = choice.held_out_error();
-    return {};
-  }
-
+  // Ranks take parts in turn; rank 0 adds them in order and keeps what has come so far.
   Status sum_directions(FieldBuild& build) {
-    FieldSums sums(options_.grid, options_.degree);
+    FieldSums total = rank() == 0 ? FieldSums(options_.grid, options_.degree) : FieldSums(LightField{});
+    FieldState::Progress done;
+    bool resumed = false;
+    if (rank() == 0 && state_.found() == FieldState::Found::same)
+      if (const auto found = state_.load(total)) {
+        done = *found;
+        resumed = true;
+      }
+    if (ranks_.any(resumed)) {
+      ranks_.broadcast(std::as_writable_bytes(std::span(&done, 1)));
+    } else if (options_.method == FieldMethod::best) {
+      Status chosen;
+      if (rank() == 0) chosen = choose_support(done);
+      if (chosen = ranks_.agree(chosen); !chosen) return chosen;
+      ranks_.broadcast(std::as_writable_bytes(std::span(&done, 1)));
+    }
+    build.support = static_cast<int>(done.support);
+    build.held_out_error = done.held_out_error;
+
+    FieldSums part(options_.grid, options_.degree);
     std::vector<DirectionEstimator> estimators(
         std::max(1u, options_.threads),
         DirectionEstimator(options_.grid, take_.positions, options_.method, build.support));
+    auto saved = std::chrono::steady_clock::now();
+    while (done.parts < kFieldParts) {
+      const std::size_t together = std::min(ranks(), kFieldParts - static_cast<std::size_t>(done.parts));
+      Status summed;
+      if (rank() < together) summed = sum_part(static_cast<std::size_t>(done.parts), part, estimators);
+      if (summed = ranks_.agree(summed); !summed) return summed;
+      add_parts(static_cast<std::size_t>(done.parts), together, part, total);
+      done.parts += together;
+      Status kept;
+      if (const auto now = std::chrono::steady_clock::now();
+          rank() == 0 && state_.is_kept() && now - saved >= options_.save_every) {
+        kept = state_.save(done, total);
+        saved = now;
+      }
+      if (kept = ranks_.agree(kept); !kept) return kept;
+    }
+    if (rank() == 0) build.field = std::move(total).take();
+    return {};
+  }
+
+ private:
+  [[nodiscard]] std::size_t probes() const { return take_.positions.size(); }
+  [[nodiscard]] std::size_t width() const { return last_ - first_; }
+  [[nodiscard]] std::size_t rank() const { return static_cast<std::size_t>(ranks_.rank()); }
+  [[nodiscard]] std::size_t ranks() const { return static_cast<std::size_t>(ranks_.count()); }
+  void report(std::size_t done) const {
+    if (progress_ && rank() == 0) progress_(done, probes() + bins_.directions().size());
+  }
+
+  [[nodiscard]] std::vector<std::size_t> missing_chunks() const {
+    std::vector<std::size_t> missing;
+    for (std::size_t c = 0; c < store_.chunks(); ++c)
+      if (state_.found() != FieldState::Found::same || !store_.holds(c)) missing.push_back(c);
+    return missing;
+  }
+  [[nodiscard]] std::size_t probes_of(std::span<const std::size_t> chunks) const {
+    std::size_t count = 0;
+    for (const std::size_t c : chunks) count += store_.last_probe(c) - store_.first_probe(c);
+    return count;
+  }
+
+  Status sort_chunk(std::size_t chunk, int width, int height) const {
+    const std::size_t directions = bins_.directions().size(), first = store_.first_probe(chunk);
+    const std::size_t count = store_.last_probe(chunk) - first;
+    std::vector<Rgb> radiance(count * directions);
+    std::optional<Error> error;
+    std::size_t erroneous = probes();
+    std::mutex mutex;
+    parallel_for(count, options_.threads, [&](std::size_t i, unsigned) {
+      const std::span<Rgb> out(radiance.data() + i * directions, directions);
+      const Status cut = cut_picture(first + i, width, height, out);
+      const std::scoped_lock lock(mutex);
+      if (!cut && first + i < erroneous) {  // the first of them, whichever thread was first
+        erroneous = first + i;
+        error = cut.error();
+      }
+    });
+    if (error) return *error;
+    return store_.write(chunk, radiance);
+  }
+
+  // The part of this rank of those that begin with `part`.
+  Status sum_part(std::size_t part, FieldSums& sums, std::vector<DirectionEstimator>& estimators) {
+    sums.clear();
     std::vector<FieldDirection> batch;
-    for (std::size_t b = 0; b < buckets_.buckets(); ++b) {
+    const std::size_t own = part + rank(), buckets = store_.buckets();
+    for (std::size_t b = own * buckets / kFieldParts; b < (own + 1) * buckets / kFieldParts; ++b) {
       if (const Status loaded = load(b); !loaded) return loaded;
       batch.resize(width(), {ShearPlane(options_.grid, Vec3d::UnitY(), 1), {}, {}, 0});
       parallel_for(width(), options_.threads, [&](std::size_t d, unsigned thread) {
@@ -87,19 +151,54 @@ class Builder {
       });
       parallel_for(static_cast<std::size_t>(sums.slabs()), options_.threads,
                    [&](std::size_t z, unsigned) { sums.add(batch, static_cast<int>(z)); });
-      report(probes() + last_);
+      // As if the other ranks were as far.
+      const std::size_t before = store_.first(part * buckets / kFieldParts);
+      const std::size_t here = last_ - store_.first(own * buckets / kFieldParts);
+      report(probes() + std::min(before + here * ranks(), bins_.directions().size()));
     }
-    build.field = std::move(sums).take();
     return {};
   }
 
-  [[nodiscard]] const DirectionBins& bins() const { return bins_; }
+  // The parts of all ranks to the total, in order.
+  void add_parts(std::size_t first, std::size_t together, const FieldSums& part, FieldSums& total) const {
+    if (rank() == 0)
+      parallel_for(static_cast<std::size_t>(total.slabs()), options_.threads,
+                   [&](std::size_t slab, unsigned) {
+                     const int z = static_cast<int>(slab);
+                     total.add(part.radiance(z), part.confidence(z), z);
+                   });
+    std::vector<float> radiance(part.radiance(0).size()), confidence(part.confidence(0).size());
+    for (std::size_t r = 1; r < together; ++r) {
+      if (is_empty(first + r)) continue;
+      for (int z = 0; z < part.slabs(); ++z)
+        if (rank() == r) {
+          ranks_.send(part.radiance(z));
+          ranks_.send(part.confidence(z));
+        } else if (rank() == 0) {
+          ranks_.receive(static_cast<int>(r), radiance);
+          ranks_.receive(static_cast<int>(r), confidence);
+          total.add(radiance, confidence, z);
+        }
+    }
+  }
+  [[nodiscard]] bool is_empty(std::size_t part) const {
+    return part * store_.buckets() / kFieldParts == (part + 1) * store_.buckets() / kFieldParts;
+  }
 
- private:
-  [[nodiscard]] std::size_t probes() const { return take_.positions.size(); }
-  [[nodiscard]] std::size_t width() const { return last_ - first_; }
-  void report(std::size_t done) const {
-    if (progress_) progress_(done, probes() + bins_.directions().size());
+  // Over how many rays to fit.
+  Status choose_support(FieldState::Progress& chosen) {
+    SupportChoice choice;
+    DirectionEstimator estimator(options_.grid, take_.positions, options_.method, 0);
+    const std::size_t step = std::max<std::size_t>(1, store_.buckets() / kHeldOutBuckets);
+    for (std::size_t b = step / 2; b < store_.buckets(); b += step) {
+      if (const Status loaded = load(b); !loaded) return loaded;
+      const std::size_t within = std::max<std::size_t>(1, width() / kHeldOutOfABucket);
+      for (std::size_t d = 0; d < width(); d += within)
+        estimator.hold_out(bins_.directions()[first_ + d], radiance_of(d), choice);
+    }
+    chosen.support = choice.best();
+    chosen.held_out_error = choice.held_out_error();
+    return {};
   }
 
   Status cut_picture(std::size_t probe, int width, int height, std::span<Rgb> out) const {
@@ -116,11 +215,11 @@ class Builder {
 
   // A bucket as it was written, then by direction.
   Status load(std::size_t bucket) {
-    first_ = buckets_.first(bucket);
-    last_ = buckets_.last(bucket);
+    first_ = store_.first(bucket);
+    last_ = store_.last(bucket);
     by_probe_.resize(probes() * width());
     by_direction_.resize(by_probe_.size());
-    if (const Status read = buckets_.read(bucket, by_probe_); !read) return read;
+    if (const Status read = store_.read(bucket, by_probe_); !read) return read;
     for (std::size_t p = 0; p < probes(); ++p)
       for (std::size_t d = 0; d < width(); ++d) by_direction_[d * probes() + p] = by_probe_[p * width() + d];
     return {};
@@ -132,8 +231,10 @@ class Builder {
   const ProbeTake& take_;
   const FieldBuildOptions& options_;
   const FieldProgress& progress_;
-  DirectionBins bins_;
-  BucketFile buckets_;
+  FieldRanks& ranks_;
+  const FieldState& state_;
+  const DirectionBins& bins_;
+  SampleStore store_;
   std::size_t first_ = 0, last_ = 0;
   std::vector<Rgb> by_probe_, by_direction_;
 };
@@ -150,31 +251,68 @@ Status check_picture(const LatLongImage& picture, const ProbeProjection& project
                                          ", lens.image_size"};
 }
 
+// All that the numbers come from, but for the program.
+std::string origin_of(const ProbeTake& take, const FieldBuildOptions& o, std::size_t directions) {
+  std::ostringstream text;
+  text.precision(17);
+  const auto [nx, ny, nz] = o.grid.size;
+  text << "lightwell.field-state/1\ngrid " << nx << ' ' << ny << ' ' << nz << "\nbounds "
+       << o.grid.low.transpose() << ' ' << o.grid.high.transpose() << "\ndegree " << o.degree << "\nmethod "
+       << (o.method == FieldMethod::best ? "best" : "low") << "\ndirections " << directions << "\nprobes "
+       << take.positions.size() << "\npictures " << o.made_from << '\n';
+  return text.str();
+}
+
+Result<DirectionBins> bins_of(const ProbeTake& take, const FieldBuildOptions& options,
+                              const LatLongImage& first) {
+  if (const Status fits = check_picture(first, options.projection, take.name(0)); !fits) return fits.error();
+  const int cells =
+      options.directions > 0 ? options.directions : direction_count_for(options.grid.longest_side());
+  DirectionBins bins(options.projection, first.width, first.height, cells, options.degree);
+  if (bins.directions().empty())
+    return Error{ErrorKind::bad_input, take.name(0) + ": the projection sees no direction in its pixels"};
+  return bins;
+}
+
+void say_what_was_found(const FieldState& state, const FieldBuildOptions& options) {
+  if (!options.remark) return;
+  if (state.found() == FieldState::Found::same)
+    options.remark("goes on where an interrupted build stands, in " + state.folder().string());
+  if (state.found() == FieldState::Found::other)
+    options.remark(state.folder().string() + ": was of other pictures or options, begins anew");
+}
+
 }  // namespace
 
 Result<FieldBuild> build_field(const ProbeTake& take, const FieldBuildOptions& options,
                                const FieldProgress& progress) {
   verify_bug(!take.positions.empty(), "a take of no probes");
+  FieldRanks alone;
+  FieldRanks& ranks = options.ranks != nullptr ? *options.ranks : alone;
   const auto first = take.picture(0);
-  if (!first) return first.error();
-  if (const Status fits = check_picture(*first, options.projection, take.name(0)); !fits) return fits.error();
-  const int cells =
-      options.directions > 0 ? options.directions : direction_count_for(options.grid.longest_side());
-  DirectionBins bins(options.projection, first->width, first->height, cells, options.degree);
-  if (bins.directions().empty())
-    return Error{ErrorKind::bad_input, take.name(0) + ": the projection sees no direction in its pixels"};
-  auto buckets = BucketFile::create(options.scratch_folder, take.positions.size(), bins.directions().size());
-  if (!buckets) return buckets.error();
-  Builder builder(take, options, progress, std::move(bins), *std::move(buckets));
+  const Result<DirectionBins> bins = first ? bins_of(take, options, *first) : first.error();
+  if (const Status ready = ranks.agree(bins ? Status() : bins.error()); !ready) return ready.error();
+  auto state = FieldState::open(options.scratch_folder, options.state_name,
+                                origin_of(take, options, bins->directions().size()), ranks);
+  if (!state) return state.error();
+  if (ranks.rank() == 0) say_what_was_found(*state, options);
+  Builder builder(take, options, progress, ranks, *state, *bins);
   FieldBuild build;
-  build.directions = static_cast<int>(builder.bins().directions().size());
-  build.coverage = builder.bins().coverage();
-  if (const Status sorted = builder.sort_pictures(first->width, first->height); !sorted)
+  build.directions = static_cast<int>(bins->directions().size());
+  build.coverage = bins->coverage();
+  if (const Status sorted = builder.sort_pictures(first->width, first->height); !sorted) {
+    // Nothing is lost that was not quick to get; a bad picture's take will be another one.
+    if (ranks.rank() == 0) state->remove();
     return sorted.error();
-  if (options.method == FieldMethod::best)
-    if (const Status chosen = builder.choose_support(build); !chosen) return chosen.error();
+  }
   if (const Status summed = builder.sum_directions(build); !summed) return summed.error();
   return build;
+}
+
+void remove_state(const FieldBuildOptions& options) {
+  if (options.state_name.empty()) return;
+  std::error_code ignored;
+  std::filesystem::remove_all(options.scratch_folder / options.state_name, ignored);
 }
 
 }  // namespace lightwell

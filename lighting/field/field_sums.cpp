@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lighting/result.h"
 
@@ -70,6 +71,8 @@ FieldSums::FieldSums(const FieldGrid& grid, int degree) : grid_(grid), degree_(d
   field_.confidence.assign(grid.points(), 0.0f);
 }
 
+FieldSums::FieldSums(LightField sums) : grid_(sums.grid), degree_(sums.degree), field_(std::move(sums)) {}
+
 double FieldSums::bytes_needed(const FieldGrid& grid, int degree) {
   const double points = static_cast<double>(grid.size[0]) * static_cast<double>(grid.size[1]) *
                         static_cast<double>(grid.size[2]);
@@ -93,6 +96,30 @@ void FieldSums::add(std::span<const FieldDirection> batch, int z) {
   }
   Eigen::Map<Eigen::MatrixXf> sums(field_.plane(z, 0, 0), 3 * points, count);
   sums.noalias() += radiance * weights;
+}
+
+std::span<const float> FieldSums::radiance(int z) const {
+  const std::size_t count = field_.slab_points() * 3 * static_cast<std::size_t>(field_.harmonics());
+  return std::span(field_.radiance).subspan(static_cast<std::size_t>(z) * count, count);
+}
+
+std::span<const float> FieldSums::confidence(int z) const {
+  const std::size_t count = field_.slab_points();
+  return std::span(field_.confidence).subspan(static_cast<std::size_t>(z) * count, count);
+}
+
+void FieldSums::add(std::span<const float> radiance, std::span<const float> confidence, int z) {
+  verify_bug(radiance.size() == this->radiance(z).size() && confidence.size() == this->confidence(z).size(),
+             "a slab of the same size");
+  float* light = field_.radiance.data() + static_cast<std::size_t>(z) * radiance.size();
+  for (std::size_t i = 0; i < radiance.size(); ++i) light[i] += radiance[i];
+  float* known = field_.confidence.data() + static_cast<std::size_t>(z) * confidence.size();
+  for (std::size_t i = 0; i < confidence.size(); ++i) known[i] += confidence[i];
+}
+
+void FieldSums::clear() {
+  std::fill(field_.radiance.begin(), field_.radiance.end(), 0.0f);
+  std::fill(field_.confidence.begin(), field_.confidence.end(), 0.0f);
 }
 
 LightField FieldSums::take() && {

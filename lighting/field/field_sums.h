@@ -25,13 +25,21 @@ struct FieldDirection {
 // source: Löw et al. 2009, equation 3
 class FieldSums {
  public:
-  FieldSums(const FieldGrid& grid, int degree);
+  FieldSums(const FieldGrid& grid, int degree);  // 0 everywhere
+  explicit FieldSums(LightField sums);           // goes on from these
 
   // Adds a batch of directions to the points of slab z. Slabs are independent of each other: threads may share them out,
   // and the sums are the same to the last bit as long as batches come in the same order.
   void add(std::span<const FieldDirection> batch, int z);
   [[nodiscard]] int slabs() const { return grid_.size[2]; }
+  // Adds other sums to slab z, as field() stores them: [harmonic][R, G, B][y][x] and [y][x].
+  void add(std::span<const float> radiance, std::span<const float> confidence, int z);
+  [[nodiscard]] std::span<const float> radiance(int z) const;
+  [[nodiscard]] std::span<const float> confidence(int z) const;
+  // Back to 0.
+  void clear();
 
+  [[nodiscard]] const LightField& field() const { return field_; }
   // Moves the sums out.
   [[nodiscard]] LightField take() &&;
   // What a field of this size needs while it is built, bytes.

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "field/field_ranks.h"
+#include "lighting/field/field_sums.h"
+#include "lighting/result.h"
+
+namespace lightwell {
+
+// Hash of a text, that goes on from another.
+// source: Fowler, Noll, Vo, FNV-1a of 64 bits
+std::uint64_t fnv1a(std::string_view text, std::uint64_t hash = 0xcbf29ce484222325u);
+
+// What a build has done so far, in a folder that the next build of the same take goes on with: sorted samples
+// (field/sample_store.h) and, from time to time, the running sums. Every file carries the mark of what it comes from
+// and checksums; what does not fit or is not whole counts as not there.
+class FieldState {
+ public:
+  enum class Found { nothing, same, other };
+
+  // folder/name, made where absent, emptied where it comes from anything else than made_from, locked against another build
+  // at the same time (failed). An empty name: a new folder that goes with this object. folder: exists.
+  static Result<FieldState> open(const std::filesystem::path& folder, const std::string& name,
+                                 const std::string& made_from, FieldRanks& ranks);
+  FieldState(FieldState&& other) noexcept;
+  FieldState& operator=(FieldState&&) = delete;
+  ~FieldState();
+
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  [[nodiscard]] std::uint64_t mark() const { return mark_; }
+  [[nodiscard]] Found found() const { return found_; }
+  [[nodiscard]] bool is_kept() const { return kept_; }
+
+  // Where the sums stand: parts added, and what `best` chose.
+  struct Progress {
+    std::uint64_t parts = 0;
+    std::int64_t support = 0;
+    double held_out_error = 0;
+  };
+  Status save(const Progress& progress, const FieldSums& sums) const;
+  // Into sums of the same size; nullopt, and sums as they were, where there are none to be trusted.
+  [[nodiscard]] std::optional<Progress> load(FieldSums& sums) const;
+
+  // Removes the folder.
+  void remove();
+
+ private:
+  FieldState(std::filesystem::path folder, bool kept) : folder_(std::move(folder)), kept_(kept) {}
+  Status prepare(const std::string& made_from);
+  std::filesystem::path folder_;
+  bool kept_;
+  std::uint64_t mark_ = 0;
+  Found found_ = Found::nothing;
+  int lock_ = -1;
+};
+
+}  // namespace lightwell
