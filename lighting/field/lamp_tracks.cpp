@@ -1,0 +1,215 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "lighting/field/lamp_tracks.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lightwell {
+namespace {
+
+constexpr double kDegree = kPi / 180;
+constexpr double kGate = 3 * kDegree;      // between a lamp and its ray
+constexpr double kMargin = 3 * kDegree;    // from the edge of what a probe sees, where a lamp is cut
+constexpr double kSmoothing_s = 0.1;       // of the position
+constexpr double kLeastDistance_m = 0.05;  // nearer, a probe has the lamp on it: no direction
+constexpr double kPairFactor = 2;          // of intensity between two probes who alone see a lamp
+constexpr std::size_t kTriedAProbe = 4;    // rays of a probe in the search for new lamps
+
+// cos of the angle between a probe's ray and a place.
+double agreement(const Vec3d& place, const Vec3d& position, const Vec3d& direction) {
+  return (place - position).normalized().dot(direction);
+}
+
+bool looks_at(const ProbeSightings& probe, const Vec3d& place) {
+  const Vec3d toward = place - probe.position;
+  const double distance = toward.norm();
+  return probe.present && distance > kLeastDistance_m &&
+         toward.y() > distance * std::cos(std::max(0.0, probe.theta_max_rad - kMargin));
+}
+
+// The sighting nearest to where a lamp should be, within an angle.
+int nearest(const ProbeSightings& probe, const Vec3d& place, double gate_rad) {
+  if (!probe.present || (place - probe.position).norm() <= kLeastDistance_m) return -1;
+  int best = -1;
+  double most = std::cos(gate_rad);
+  for (std::size_t i = 0; i < probe.lamps.size(); ++i)
+    if (const double cosine = agreement(place, probe.position, probe.lamps[i].direction); cosine > most) {
+      most = cosine;
+      best = static_cast<int>(i);
+    }
+  return best;
+}
+
+double intensity_of(const ProbeSightings& probe, int sighting, const Vec3d& place) {
+  return luminance(probe.lamps[static_cast<std::size_t>(sighting)].illuminance) *
+         (place - probe.position).squaredNorm();
+}
+
+// Certainty: the position's deviation over the distance to the nearest probe that sees the lamp.
+double relative_sigma(const LampPlace& place, std::span<const LampRay> rays) {
+  double nearest_m = std::numeric_limits<double>::max();
+  for (const LampRay& ray : rays) nearest_m = std::min(nearest_m, (place.position - ray.origin).norm());
+  return place.sigma_m / nearest_m;
+}
+
+}  // namespace
+
+// Looks for a known lamp's rays.
+void LampTracks::link(LampTrack& track, std::span<const ProbeSightings> probes) {
+  track.links.resize(probes.size());
+  for (std::size_t n = 0; n < probes.size(); ++n) {
+    const double distance = std::max((track.position - probes[n].position).norm(), kLeastDistance_m);
+    track.links[n].sighting = nearest(probes[n], track.position, kGate + track.sigma_m / distance);
+  }
+}
+
+// Moves a lamp to where its rays say. False where it is to be given up.
+bool LampTracks::follow(LampTrack& track, std::span<const ProbeSightings> probes, double elapsed_s) {
+  std::vector<LampRay> rays;
+  for (std::size_t n = 0; n < probes.size(); ++n) {
+    const int sighting = track.links[n].sighting;
+    if (sighting < 0) continue;
+    // Where two lamps stand in one line their common centre is that of neither.
+    const bool shared = std::any_of(tracks_.begin(), tracks_.end(), [&](const LampTrack& other) {
+      return other.id != track.id && other.links[n].sighting == sighting;
+    });
+    if (!shared)
+      rays.push_back({probes[n].position, probes[n].lamps[static_cast<std::size_t>(sighting)].direction});
+  }
+  const double change = elapsed_s / kFade_s;
+  const auto place = triangulate(rays, track.position);
+  const bool certain = place && relative_sigma(*place, rays) < (track.weight > 0 ? kLeaveSigma : kEnterSigma);
+  track.weight = std::clamp(track.weight + (certain ? change : -change), 0.0, 1.0);
+  if (!certain) return track.weight > 0;
+  track.position += (1 - std::exp(-elapsed_s / kSmoothing_s)) * (place->position - track.position);
+  track.sigma_m = place->sigma_m;
+  return true;
+}
+
+// Rays that no lamp claims, tried in pairs.
+void LampTracks::find_new(std::span<const ProbeSightings> probes) {
+  struct Free {
+    std::size_t probe;
+    int sighting;
+  };
+  std::vector<Free> free;
+  for (std::size_t n = 0; n < probes.size(); ++n) {
+    std::size_t taken = 0;
+    for (std::size_t i = 0; probes[n].present && i < probes[n].lamps.size() && taken < kTriedAProbe; ++i) {
+      const bool claimed = std::any_of(tracks_.begin(), tracks_.end(), [&](const LampTrack& track) {
+        return track.links[n].sighting == static_cast<int>(i);
+      });
+      if (claimed) continue;
+      free.push_back({n, static_cast<int>(i)});
+      ++taken;
+    }
+  }
+  const auto ray_of = [&](const Free& f) {
+    return LampRay{probes[f.probe].position,
+                   probes[f.probe].lamps[static_cast<std::size_t>(f.sighting)].direction};
+  };
+  for (;;) {
+    LampTrack best;
+    double best_score = 0;
+    for (std::size_t a = 0; a < free.size(); ++a)
+      for (std::size_t b = a + 1; b < free.size(); ++b) {
+        if (free[a].probe == free[b].probe) continue;
+        const auto guess = meeting_point(ray_of(free[a]), ray_of(free[b]), 2 * kLeastDistance_m);
+        if (!guess) continue;
+        std::vector<LampRay> rays;
+        double denied = 0, least = std::numeric_limits<double>::max(), most = 0;
+        std::vector<LampTrack::Link> links(probes.size());
+        for (std::size_t n = 0; n < probes.size(); ++n) {
+          int found = -1;
+          double nearest_cosine = std::cos(kGate);
+          for (const Free& f : free)
+            if (f.probe == n)
+              if (const double cosine = agreement(*guess, probes[n].position, ray_of(f).direction);
+                  cosine > nearest_cosine) {
+                nearest_cosine = cosine;
+                found = f.sighting;
+              }
+          links[n].sighting = found;
+          if (found >= 0) {
+            rays.push_back(ray_of({n, found}));
+            least = std::min(least, intensity_of(probes[n], found, *guess));
+            most = std::max(most, intensity_of(probes[n], found, *guess));
+          } else if (looks_at(probes[n], *guess)) {
+            ++denied;
+          }
+        }
+        const auto votes = static_cast<double>(rays.size());
+        if (votes < 2 || (votes < 3 && (denied > 0 || most > kPairFactor * least))) continue;
+        const auto place = triangulate(rays, *guess);
+        if (!place || place->residual_rad > kGate / 2 || relative_sigma(*place, rays) > kEnterSigma) continue;
+        // A probe who looks there and sees nothing counts half: something may stand between.
+        const double score = votes - denied / 2 - place->residual_rad / kGate;
+        if (score <= std::max(best_score, 1.0)) continue;
+        best_score = score;
+        best.position = place->position;
+        best.sigma_m = place->sigma_m;
+        best.links = std::move(links);
+      }
+    if (!(best_score > 0)) return;
+    best.id = next_id_++;
+    best.weight = first_ ? 1 : 0;
+    std::erase_if(free, [&](const Free& f) { return best.links[f.probe].sighting == f.sighting; });
+    tracks_.push_back(std::move(best));
+  }
+}
+
+// What each probe measured of each lamp. Of a sighting that two lamps claim each has what its mean intensity foretells.
+void LampTracks::share_out(std::span<const ProbeSightings> probes) {
+  std::vector<double> foretold;  // candela, of each lamp
+  for (const LampTrack& track : tracks_) foretold.push_back(std::max(luminance(track.intensity), 1e-9));
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    LampTrack& track = tracks_[t];
+    Rgbd sum = Rgbd::Zero();
+    double seen = 0, radius = 0;
+    for (std::size_t n = 0; n < probes.size(); ++n) {
+      LampTrack::Link& link = track.links[n];
+      const double square = (track.position - probes[n].position).squaredNorm();
+      link.known = link.sighting >= 0 || looks_at(probes[n], track.position);
+      link.share = 0;
+      link.intensity.setZero();
+      if (link.sighting < 0) continue;
+      double own = 0, all = 0;
+      for (std::size_t o = 0; o < tracks_.size(); ++o)
+        if (tracks_[o].links[n].sighting == link.sighting) {
+          const double lux = foretold[o] / (tracks_[o].position - probes[n].position).squaredNorm();
+          all += lux;
+          if (o == t) own = lux;
+        }
+      const LampSighting& lamp = probes[n].lamps[static_cast<std::size_t>(link.sighting)];
+      link.share = own / all;
+      link.intensity = link.share * square * lamp.illuminance;
+      sum += link.intensity;
+      radius += std::sin(std::min(lamp.angular_radius_rad, kPi / 2)) * std::sqrt(square);
+      ++seen;
+    }
+    if (seen > 0) {
+      track.intensity = sum / seen;
+      track.radius_m = radius / seen;
+    }
+  }
+}
+
+void LampTracks::update(std::span<const ProbeSightings> probes, double elapsed_s) {
+  for (LampTrack& track : tracks_) link(track, probes);
+  std::vector<std::uint32_t> lost;
+  for (LampTrack& track : tracks_)
+    if (!follow(track, probes, elapsed_s)) lost.push_back(track.id);
+  std::erase_if(tracks_, [&](const LampTrack& track) {
+    return std::find(lost.begin(), lost.end(), track.id) != lost.end();
+  });
+  find_new(probes);
+  share_out(probes);
+  const bool any =
+      std::any_of(probes.begin(), probes.end(), [](const ProbeSightings& p) { return p.present; });
+  first_ = first_ && !any;
+}
+
+}  // namespace lightwell
