@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -16,6 +15,8 @@
 #include <thread>
 
 #include "cli/command.h"
+#include "cli/field_pictures.h"
+#include "cli/field_walk.h"
 #include "cli/number_list.h"
 #include "cli/progress.h"
 #include "cli/stop_notice.h"
@@ -24,8 +25,6 @@
 #include "field/launched_ranks.h"
 #include "field/probe_list.h"
 #include "interface/atomic_file.h"
-#include "interface/calibration_io.h"
-#include "interface/environment_io.h"
 #include "interface/field_file.h"
 #include "interface/option_range.h"
 #include "interface/printable.h"
@@ -40,11 +39,12 @@ constexpr int kMostDirections = 1 << 20;
 
 struct BuildArguments {
   std::string probes, grid, bounds, out;
-  std::string method = "best", projection = "latlong", lens;
+  std::string method = "best";
+  PictureArguments pictures;
+  WalkArguments walk;
   int degree = 4, directions = 0, threads = 0;
   double save_every_s = 30;
-  double max_error = 0, ball_radius_m = 0, blind_cone_deg = 2.1;
-  std::optional<double> camera_distance_m;
+  double max_error = 0;
   bool json = false;
 };
 
@@ -69,27 +69,6 @@ Result<FieldGrid> grid_of(const BuildArguments& o) {
                    ", allowed: X0 < X1, Y0 < Y1, Z0 < Z1, -100000 to 100000 metres");
   }
   return grid;
-}
-
-Result<ProbeProjection> projection_of(const BuildArguments& o) {
-  if (o.projection != "fisheye" && !o.lens.empty()) return usage("--lens needs --projection fisheye");
-  if (o.projection != "mirror-ball" && (o.ball_radius_m > 0 || o.camera_distance_m))
-    return usage("--ball-radius and --camera-distance need --projection mirror-ball");
-  if (o.projection == "latlong") return ProbeProjection(LatLongProbe{});
-  if (o.projection == "mirror-ball") {
-    if (o.camera_distance_m && !(o.ball_radius_m > 0)) return usage("--camera-distance needs --ball-radius");
-    if (o.camera_distance_m && !(*o.camera_distance_m > o.ball_radius_m))
-      return usage("--camera-distance is " + std::to_string(*o.camera_distance_m) +
-                   ", allowed: above --ball-radius, from the ball's centre");
-    return ProbeProjection(
-        MirrorBallProbe{o.ball_radius_m, o.camera_distance_m, o.blind_cone_deg * kPi / 180});
-  }
-  if (o.projection != "fisheye")
-    return usage("--projection is " + o.projection + ", allowed: latlong, mirror-ball, fisheye");
-  if (o.lens.empty()) return usage("--projection fisheye needs --lens lens.json");
-  auto lens = read_lens(o.lens);
-  if (!lens) return lens.error();
-  return ProbeProjection(FisheyeProbe{*std::move(lens)});
 }
 
 // What the kernel says can be had without swapping; none where it does not say.
@@ -124,54 +103,27 @@ unsigned default_threads(int ranks) {
   return std::clamp(all / static_cast<unsigned>(ranks), 1u, std::max(1u, allowed));
 }
 
-// The pictures of a list as they are now, and how they are read: what an unfinished build must have come from.
-std::string origin_of(const BuildArguments& o, const ProbeList& list, const std::string& lens) {
-  std::uint64_t mark = fnv1a(lens);
-  char text[200];
-  for (std::size_t i = 0; i < list.files.size(); ++i) {
-    std::error_code absent;  // is said when it is read
-    const auto size = std::filesystem::file_size(list.files[i], absent);
-    const auto time = std::filesystem::last_write_time(list.files[i], absent).time_since_epoch().count();
-    const Vec3d& at = list.positions[i];
-    std::snprintf(text, sizeof text, "%.17g %.17g %.17g %ju %jd ", at.x(), at.y(), at.z(),
-                  static_cast<std::uintmax_t>(size), static_cast<std::intmax_t>(time));
-    mark = fnv1a(list.files[i].string() + '\n', fnv1a(text, mark));
-  }
-  std::snprintf(text, sizeof text, "%s ball %.17g camera %.17g blind %.17g files %016jx",
-                o.projection.c_str(), o.ball_radius_m, o.camera_distance_m.value_or(0), o.blind_cone_deg,
-                static_cast<std::uintmax_t>(mark));
-  return text;
-}
-
-// Pictures of a list; says once that values were read as 0.
-ProbeTake take_of(const ProbeList& list, std::atomic<bool>& repaired, bool speaks) {
-  ProbeTake take;
-  take.positions = list.positions;
-  take.name = [&list](std::size_t i) { return list.files[i].string(); };
-  take.picture = [&list, &repaired, speaks](std::size_t i) -> Result<LatLongImage> {
-    auto environment = read_environment(list.files[i]);
-    if (!environment) return environment.error();
-    if (environment->not_finite + environment->negative > 0 && !repaired.exchange(true) && speaks)
-      std::fprintf(
-          stderr, "lightwell: %s: values that are negative, NaN or infinite; read as 0, here and in others\n",
-          printable(list.files[i].string()).c_str());
-    return std::move(environment->image);
-  };
-  return take;
-}
-
 bool is_dark(const LightField& field) {
   return std::all_of(field.radiance.begin(), field.radiance.end(), [](float value) { return value == 0; });
 }
 
-void report(const BuildArguments& o, const ProbeList& list, const FieldBuild& build,
+struct Prepared {
+  FieldBuildOptions options;
+  ProbeTake take;
+  std::shared_ptr<WalkTake> walk;  // none where pictures are listed
+  std::shared_ptr<std::atomic<bool>> repaired = std::make_shared<std::atomic<bool>>(false);
+};
+
+void report(const BuildArguments& o, const Prepared& prepared, const FieldBuild& build,
             const FieldFileReport& file, double seconds) {
   const LightField& field = build.field;
   const double confidence = std::accumulate(field.confidence.begin(), field.confidence.end(), 0.0) /
                             static_cast<double>(field.confidence.size());
   const auto points = field.grid.points();
+  const std::size_t probes = prepared.take.positions.size();
   if (!o.json) {
-    std::printf("probes            %zu, %d directions, %.1f %% of the sphere seen\n", list.files.size(),
+    if (prepared.walk) print_walk(*prepared.walk);
+    std::printf("probes            %zu, %d directions, %.1f %% of the sphere seen\n", probes,
                 build.directions, 100 * build.coverage);
     if (build.support > 0)
       std::printf("fit               over %d rays, held-out rays err %.3g of the RMS radiance\n",
@@ -187,7 +139,7 @@ void report(const BuildArguments& o, const ProbeList& list, const FieldBuild& bu
                                  {"grid", field.grid.size},
                                  {"degree", field.degree},
                                  {"method", o.method},
-                                 {"probes", list.files.size()},
+                                 {"probes", probes},
                                  {"directions", build.directions},
                                  {"coverage", build.coverage},
                                  {"confidence", confidence},
@@ -201,13 +153,39 @@ void report(const BuildArguments& o, const ProbeList& list, const FieldBuild& bu
     json["support"] = build.support;
     json["held_out_error"] = build.held_out_error;
   }
+  if (prepared.walk) json["walk"] = walk_json(*prepared.walk, o.walk);
   std::printf("%s\n", json.dump(2).c_str());
 }
 
-struct Prepared {
-  FieldBuildOptions options;
-  ProbeList list;
-};
+// From a list of pictures.
+Status prepare_list(const BuildArguments& o, bool speaks, Prepared& prepared) {
+  if (const Status none = check_no_walk_options(o.walk); !none) return none;
+  auto projection = projection_of(o.pictures);
+  if (!projection) return projection.error();
+  prepared.options.projection = *std::move(projection);
+  auto list = read_probe_list(o.probes);
+  if (!list) return list.error();
+  auto origin = origin_of(o.pictures, *list);
+  if (!origin) return origin.error();
+  prepared.options.made_from = *std::move(origin);
+  prepared.take = take_of(*std::move(list), prepared.repaired, speaks);
+  return {};
+}
+
+// From a recording and the poses beside it.
+Status prepare_walk(const BuildArguments& o, bool speaks, Prepared& prepared) {
+  if (const Status none = check_no_picture_options(o.pictures); !none) return none;
+  const FieldBuildOptions& options = prepared.options;
+  const int cells =
+      options.directions > 0 ? options.directions : direction_count_for(options.grid.longest_side());
+  auto walk = open_walk(o.probes, o.walk, options.grid, cells, speaks);
+  if (!walk) return walk.error();
+  prepared.walk = *std::move(walk);
+  prepared.options.projection = prepared.walk->projection();
+  prepared.options.made_from = prepared.walk->origin();
+  prepared.take = WalkTake::probes(prepared.walk);
+  return {};
+}
 
 // Everything that can be wrong before the first picture is read.
 Result<Prepared> prepare(const BuildArguments& o, FieldRanks& ranks) {
@@ -224,23 +202,14 @@ Result<Prepared> prepare(const BuildArguments& o, FieldRanks& ranks) {
   options.threads =
       o.threads > 0 ? static_cast<unsigned>(o.threads) : default_threads(ranks.on_this_machine());
   if (const Status enough = check_memory(o, *grid, ranks.on_this_machine()); !enough) return enough.error();
-  auto projection = projection_of(o);
-  if (!projection) return projection.error();
-  options.projection = *std::move(projection);
-  auto list = read_probe_list(o.probes);
-  if (!list) return list.error();
-  prepared.list = *std::move(list);
   if (const Status other = check_output_is_no_input(o.out, {o.probes}); !other) return other.error();
-  std::string lens;
-  if (!o.lens.empty()) {
-    const auto text = read_text_file(o.lens);
-    if (!text) return text.error();
-    lens = *text;
-  }
+  const bool speaks = ranks.rank() == 0;
+  const Status inputs =
+      is_take(o.probes) ? prepare_walk(o, speaks, prepared) : prepare_list(o, speaks, prepared);
+  if (!inputs) return inputs.error();
   const std::filesystem::path out(o.out);
   options.scratch_folder = out.parent_path();
   options.state_name = out.filename().string() + ".part";
-  options.made_from = origin_of(o, prepared.list, lens);
   options.save_every = std::chrono::seconds(static_cast<int>(o.save_every_s));
   options.ranks = &ranks;
   return prepared;
@@ -253,18 +222,16 @@ Result<FieldBuild> build(const Prepared& prepared, FieldRanks& ranks) {
     std::fprintf(stderr, "lightwell: %s\n", printable(line).c_str());
   };
   if (speaks)
-    for (const std::string& remark : remarks_on_places(prepared.list.positions, options.grid))
+    for (const std::string& remark : remarks_on_places(prepared.take.positions, options.grid))
       options.remark(remark);
-  std::atomic<bool> repaired = false;
   std::optional<Progress> bar;
-  auto built = build_field(take_of(prepared.list, repaired, speaks), options,
-                           [&](std::size_t done, std::size_t total) {
-                             if (!bar) bar.emplace(total);
-                             bar->done(done);
-                           });
+  auto built = build_field(prepared.take, options, [&](std::size_t done, std::size_t total) {
+    if (!bar) bar.emplace(total);
+    bar->done(done);
+  });
   bar.reset();
-  const bool said = repaired;
-  if (ranks.any(repaired) && speaks && !said)
+  const bool said = *prepared.repaired;
+  if (ranks.any(said) && speaks && !said)
     options.remark("values of pictures that are negative, NaN or infinite; read as 0");
   if (built && speaks && is_dark(built->field)) options.remark("no probe has any light: the field is dark");
   return built;
@@ -284,7 +251,7 @@ int run_as(const BuildArguments& o, FieldRanks& ranks) {
   if (!file) return fail(file.error());
   remove_state(prepared->options);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-  report(o, prepared->list, *built, *file, taken.count());
+  report(o, *prepared, *built, *file, taken.count());
   return 0;
 }
 
@@ -310,10 +277,13 @@ Command add_field_build(CLI::App& field) {
   CLI::App* command = field.add_subcommand("build", "Resample pictures of many places to a grid of light");
   command->footer(
       "Example: lightwell field build probes.csv --grid 32,16,32 --bounds -2,0,-2,2,2,2 --out field.vdb\n"
+      "         lightwell field build walk.mkv --grid 16,8,16 --bounds -1,0,-1,1,1,1 --out field.vdb\n"
       "probes.csv: x,y,z,file (metres; images of one size, EXR or Radiance HDR)");
-  command->add_option("probes", o->probes, "List of probes, CSV with columns x,y,z,file")
+  command
+      ->add_option("probes", o->probes,
+                   "List of probes, CSV with columns x,y,z,file; or a recording of a walk (TAKE.mkv)")
       ->required()
-      ->type_name("CSV");
+      ->type_name("FILE");
   command->add_option("--grid", o->grid, "Points along each axis, 2 to 4096")
       ->required()
       ->type_name("NX,NY,NZ");
@@ -328,26 +298,8 @@ Command add_field_build(CLI::App& field) {
                    "best: local fits chosen by held-out rays; low: the splat of Löw et al. 2009")
       ->capture_default_str()
       ->type_name("METHOD");
-  command->add_option("--projection", o->projection, "Of the images: latlong, mirror-ball, fisheye")
-      ->capture_default_str()
-      ->type_name("NAME");
-  command
-      ->add_option("--ball-radius", o->ball_radius_m,
-                   "Mirror ball's radius, metres: its rays start on its surface")
-      ->check(numbers_above_0_to(10, "above 0 to 10 metres"))
-      ->type_name("M");
-  command
-      ->add_option("--camera-distance", o->camera_distance_m,
-                   "From the mirror ball's centre to the camera, metres; else as if from far away")
-      ->check(numbers_above_0_to(1000, "above 0 to 1000 metres"))
-      ->type_name("M");
-  command
-      ->add_option("--blind-cone", o->blind_cone_deg,
-                   "Half angle behind the mirror ball of which its rim shows nothing")
-      ->check(numbers_from(0, 60, "0 to 60 degrees"))
-      ->capture_default_str()
-      ->type_name("DEG");
-  command->add_option("--lens", o->lens, "lens.json of a fisheye probe")->type_name("FILE");
+  add_picture_options(*command, o->pictures);
+  add_walk_options(*command, o->walk);
   command
       ->add_option("--directions", o->directions,
                    "Into how many directions to cut the sphere; 0: as many as the grid needs")

@@ -149,6 +149,11 @@ Result<PoseFile> read_poses(const std::filesystem::path& file) {
   return parse_poses(*text, file.string());
 }
 
+std::filesystem::path poses_beside(const std::filesystem::path& take) {
+  std::filesystem::path file = take;
+  return file.replace_extension(".poses.csv");
+}
+
 Result<PoseFileWriter> PoseFileWriter::create(const std::filesystem::path& file, bool with_sample_ns) {
   std::FILE* stream = std::fopen(file.c_str(), "wex");
   if (stream == nullptr)

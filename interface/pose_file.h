@@ -32,6 +32,9 @@ struct PoseFile {
 Result<PoseFile> read_poses(const std::filesystem::path& file);
 Result<PoseFile> parse_poses(std::string_view text, const std::string& file);
 
+// take.poses.csv of take.mkv.
+std::filesystem::path poses_beside(const std::filesystem::path& take);
+
 // Writes poses as they come, flushed line by line: what was written is whole however the program ends.
 class PoseFileWriter {
  public:

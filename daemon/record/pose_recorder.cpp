@@ -7,11 +7,6 @@
 
 namespace lightwell {
 
-std::filesystem::path poses_beside(const std::filesystem::path& take) {
-  std::filesystem::path file = take;
-  return file.replace_extension(".poses.csv");
-}
-
 Result<std::unique_ptr<PoseRecorder>> PoseRecorder::start(const TrackingOptions& options,
                                                           const std::filesystem::path& file) {
   auto receiver = TrackingReceiver::open(options);

@@ -15,9 +15,6 @@
 
 namespace lightwell {
 
-// take.poses.csv of take.mkv.
-std::filesystem::path poses_beside(const std::filesystem::path& take);
-
 // Writes what a tracker sends to a pose file as it comes, on a thread of its own.
 class PoseRecorder {
  public:

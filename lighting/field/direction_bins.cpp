@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "lighting/harmonics.h"
@@ -174,8 +175,18 @@ void DirectionBins::mean_radiance(std::span<const Rgb> pixels, std::span<Rgb> ou
              "a picture of the size of the bins");
   for (std::size_t d = 0; d < directions_.size(); ++d) {
     Rgb sum = Rgb::Zero();
-    for (std::size_t i = first_share_[d]; i < first_share_[d + 1]; ++i)
-      sum += shares_[i].weight * pixels[shares_[i].pixel];
+    float unseen = 0;
+    for (std::size_t i = first_share_[d]; i < first_share_[d + 1]; ++i) {
+      const Rgb& pixel = pixels[shares_[i].pixel];
+      if (std::isnan(pixel.x()))
+        unseen += shares_[i].weight;
+      else
+        sum += shares_[i].weight * pixel;
+    }
+    if (unseen > 0.5f)
+      sum.setConstant(std::numeric_limits<float>::quiet_NaN());
+    else if (unseen > 0)
+      sum /= 1 - unseen;
     out[d] = sum;
   }
 }

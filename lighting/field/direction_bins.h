@@ -32,7 +32,8 @@ class DirectionBins {
   [[nodiscard]] std::span<const MeasuredDirection> directions() const { return directions_; }
   // Part of the sphere that is seen, 0 to 1.
   [[nodiscard]] double coverage() const;
-  // The mean radiance in each direction. pixels: [height][width]; out: [directions()].
+  // The mean radiance in each direction of what was seen of it; NaN where that is less than half. pixels:
+  // [height][width], NaN where nothing was seen; out: [directions()].
   void mean_radiance(std::span<const Rgb> pixels, std::span<Rgb> out) const;
   // ∫ Y_lm over the part of the sphere that each direction stands for: column d, [harmonic_count(degree)].
   [[nodiscard]] const Eigen::MatrixXd& harmonics() const { return harmonics_; }

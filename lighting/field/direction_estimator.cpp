@@ -37,10 +37,11 @@ DirectionEstimator::DirectionEstimator(const FieldGrid& grid, std::span<const Ve
 ShearPlane DirectionEstimator::project(const MeasuredDirection& direction, std::span<const Rgb> radiance) {
   verify_bug(radiance.size() == positions_.size(), "one radiance a probe");
   const ShearPlane plane(grid_, direction.direction, pixels_a_cell_);
-  samples_.resize(positions_.size());
+  samples_.clear();
   for (std::size_t i = 0; i < positions_.size(); ++i) {
+    if (std::isnan(radiance[i].x())) continue;
     const Vec3d at = grid_.grid_from_world(positions_[i] + direction.origin);
-    samples_[i] = {plane.across(plane.pixel_of(at)).cast<float>(), radiance[i]};
+    samples_.push_back({plane.across(plane.pixel_of(at)).cast<float>(), radiance[i]});
   }
   return plane;
 }
@@ -48,7 +49,7 @@ ShearPlane DirectionEstimator::project(const MeasuredDirection& direction, std::
 void DirectionEstimator::estimate(const MeasuredDirection& direction, std::span<const Rgb> radiance,
                                   FieldDirection& out) {
   out.plane = project(direction, radiance);
-  if (method_ == FieldMethod::low) {
+  if (method_ == FieldMethod::low || samples_.empty()) {
     gaussian_splat(out.plane, samples_, out.image);
     return;
   }
@@ -59,6 +60,7 @@ void DirectionEstimator::estimate(const MeasuredDirection& direction, std::span<
 void DirectionEstimator::hold_out(const MeasuredDirection& direction, std::span<const Rgb> radiance,
                                   SupportChoice& choice) {
   (void)project(direction, radiance);
+  if (samples_.empty()) return;
   nearest_.build(samples_);
   choice.add(nearest_);
 }

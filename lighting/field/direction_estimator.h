@@ -24,7 +24,7 @@ class DirectionEstimator {
   DirectionEstimator(const FieldGrid& grid, std::span<const Vec3d> positions, FieldMethod method,
                      int support);
 
-  // radiance: of each probe in this direction.
+  // radiance: of each probe in this direction, NaN where it did not see it.
   void estimate(const MeasuredDirection& direction, std::span<const Rgb> radiance, FieldDirection& out);
   // The same rays, foretold from each other.
   void hold_out(const MeasuredDirection& direction, std::span<const Rgb> radiance, SupportChoice& choice);

@@ -16,7 +16,8 @@ struct Place {
   double x, y;
 };
 
-std::optional<ProbeRay> ray(const LatLongProbe&, const Place& at) {
+std::optional<ProbeRay> ray(const LatLongProbe& probe, const Place& at) {
+  if (at.y / at.height * kPi > probe.theta_max_rad) return std::nullopt;
   return ProbeRay{direction_from_lat_long(at.x / at.width, at.y / at.height)};
 }
 

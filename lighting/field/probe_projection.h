@@ -16,8 +16,11 @@ struct ProbeRay {
   Vec3d origin = Vec3d::Zero();  // metres from the probe's position
 };
 
-// Pictures of latitude and longitude (lighting/direction.h), of one point.
-struct LatLongProbe {};
+// Pictures of latitude and longitude (lighting/direction.h), of one point; what lies farther from +Y than theta_max_rad
+// they do not show.
+struct LatLongProbe {
+  double theta_max_rad = kPi;
+};
 
 // A mirror ball whose picture is the circle that touches the image's sides, seen by a camera that looks along −Z with its
 // right side toward +X: the middle of the picture shows what is at +Z, the rim what is behind the ball. The probe's

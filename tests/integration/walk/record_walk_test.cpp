@@ -6,29 +6,15 @@
 
 #include "interface/pose_file.h"
 #include "interface/recording.h"
-#include "tests/integration/chain/chain.h"
+#include "tests/integration/walk/walk_fixture.h"
 
 namespace lightwell::test {
 namespace {
 
 using testing::HasSubstr;
 
-// A UDP port by process: FreeD and OpenTrackIO have none of their own. Below those that the system hands out.
-std::string own_port() {
-  static int count = 0;
-  return std::to_string(20000 + (static_cast<int>(::getpid()) * 4 + count++) % 10000);
-}
-
-class RecordWalk : public Chain {
+class RecordWalk : public Walk {
  protected:
-  [[nodiscard]] ProcessResult record(Words more) const {
-    Words arguments = {"record", "--out", take().string(), "--json"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_process(program("lightwell"), arguments);
-  }
-  [[nodiscard]] std::filesystem::path take() const { return folder_.path() / "take.mkv"; }
-  [[nodiscard]] std::filesystem::path poses() const { return folder_.path() / "take.poses.csv"; }
-
   // Where the camera says it was, by its truth, at mid-exposure.
   [[nodiscard]] std::vector<TimedPose> true_poses() const {
     std::vector<TimedPose> poses;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "lighting/harmonics.h"
@@ -94,6 +95,33 @@ TEST(DirectionBins, AFisheyeLeavesTheLowerHemisphereDark) {
   EXPECT_NEAR(found(0, 0), std::sqrt(kPi), 0.01);                  // 2π Y_00
   EXPECT_NEAR(found(2, 0), kPi * std::sqrt(3 / (4 * kPi)), 0.01);  // 2π √(3/4π) / 2
   EXPECT_NEAR(found(1, 0), 0, 1e-3);
+}
+
+TEST(DirectionBins, WhatAPictureDidNotSeeIsKnownToBeUnknown) {
+  const DirectionBins bins(LatLongProbe{}, 64, 32, 200, 2);
+  std::vector<Rgb> pixels(64 * 32, Rgb::Constant(3));
+  for (std::size_t i = 64 * 16; i < pixels.size(); ++i)
+    pixels[i].setConstant(std::numeric_limits<float>::quiet_NaN());
+  std::vector<Rgb> radiance(bins.directions().size());
+  bins.mean_radiance(pixels, radiance);
+  for (std::size_t d = 0; d < radiance.size(); ++d) {
+    const double height = bins.directions()[d].direction.y();
+    if (height > 0.05) {
+      EXPECT_NEAR(radiance[d].x(), 3, 1e-5) << "of what was seen, the mean";
+    }
+    if (height < -0.05) {
+      EXPECT_TRUE(std::isnan(radiance[d].x()));
+    }
+  }
+}
+
+TEST(DirectionBins, APictureThatEndsAboveTheNadirHasNoDirectionsBelow) {
+  const double theta_max_rad = 1.2;
+  const DirectionBins bins(LatLongProbe{theta_max_rad}, 128, 64, 1000, 2);
+  for (const MeasuredDirection& direction : bins.directions())
+    EXPECT_GT(direction.direction.y(), std::cos(theta_max_rad));
+  // The border is cut out of pieces of a third of a cell.
+  EXPECT_NEAR(bins.coverage(), (1 - std::cos(theta_max_rad)) / 2, 0.005);
 }
 
 }  // namespace
