@@ -236,8 +236,10 @@ Result<RayTracer> RayTracer::create(const Scene& scene, Edges edges) {
   return RayTracer(std::make_unique<Scenes>(scene, edges));
 }
 
-RadiancePicture RayTracer::picture(const SceneCamera& camera, int width, int height,
-                                   std::span<const DirectionalLight> lights, int threads) const {
+// lights_at(point): a range of lights.
+template <typename Lights>
+RadiancePicture RayTracer::shade(const SceneCamera& camera, int width, int height, int threads,
+                                 const Lights& lights_at) const {
   RadiancePicture picture{
       width, height,
       std::vector<float>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4)};
@@ -248,6 +250,7 @@ RadiancePicture RayTracer::picture(const SceneCamera& camera, int width, int hei
     ShadowRays rays(*scenes_, *hit, [&](const DirectionalLight& light, const Rgb& returned) {
       total += (light.illuminance * returned).cast<double>();
     });
+    const auto& lights = lights_at(hit->start);
     for (const DirectionalLight& light : lights)
       if (const float cosine = hit->normal.dot(light.direction); cosine > 0) rays.add(light, cosine);
     rays.flush();
@@ -256,6 +259,20 @@ RadiancePicture RayTracer::picture(const SceneCamera& camera, int width, int hei
     picture.rgba[4 * pixel + 3] = 1;
   });
   return picture;
+}
+
+RadiancePicture RayTracer::picture(const SceneCamera& camera, int width, int height,
+                                   std::span<const DirectionalLight> lights, int threads) const {
+  return shade(camera, width, height, threads, [&](const Vec3f&) { return lights; });
+}
+
+RadiancePicture RayTracer::picture(const SceneCamera& camera, int width, int height,
+                                   const LightsAt& lights_at, int threads) const {
+  return shade(camera, width, height, threads, [&](const Vec3f& point) {
+    std::vector<DirectionalLight> lights;
+    lights_at(point, lights);
+    return lights;
+  });
 }
 
 std::vector<float> RayTracer::transport(const SceneCamera& camera, int width, int height,

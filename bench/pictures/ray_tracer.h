@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -16,6 +17,9 @@ namespace lightwell::pictures {
 
 // Whether a ray may once in a million slip between two triangles that share an edge. Watertight takes twice the time.
 enum class Edges { fast, watertight };
+
+// Light that differs from place to place: fills in what a point receives. Called by several threads at once.
+using LightsAt = std::function<void(const Vec3f& point, std::vector<DirectionalLight>& lights)>;
 
 // Direct light with exact visibility: what a picture ought to be. The reflection models are written here anew, from
 // docs/conventions.md and the glTF specification, so that an error in a shader is not repeated.
@@ -32,6 +36,9 @@ class RayTracer {
   [[nodiscard]] render::RadiancePicture picture(const render::SceneCamera& camera, int width, int height,
                                                 std::span<const DirectionalLight> lights,
                                                 int threads = 1) const;
+  // The same where each place has its own lights, all beyond the scene.
+  [[nodiscard]] render::RadiancePicture picture(const render::SceneCamera& camera, int width, int height,
+                                                const LightsAt& lights_at, int threads = 1) const;
   // What a lux from each light returns at each pixel: luminance of white light, [pixel][light].
   [[nodiscard]] std::vector<float> transport(const render::SceneCamera& camera, int width, int height,
                                              std::span<const DirectionalLight> lights) const;
@@ -41,6 +48,9 @@ class RayTracer {
   struct Scenes;
 
  private:
+  template <typename Lights>
+  [[nodiscard]] render::RadiancePicture shade(const render::SceneCamera& camera, int width, int height,
+                                              int threads, const Lights& lights_at) const;
   explicit RayTracer(std::unique_ptr<Scenes> scenes);
   std::unique_ptr<Scenes> scenes_;
 };
