@@ -6,12 +6,14 @@ namespace lightwell::cli {
 
 // `lightwell field …`: one file a subcommand.
 Command add_field_build(CLI::App& field);
+Command add_field_live(CLI::App& field);
 Command add_field_query(CLI::App& field);
 
 Command add_field(CLI::App& app) {
   CLI::App* group = app.add_subcommand("field", "Light that changes from place to place, from many probes");
   group->require_subcommand(1);
-  const std::vector<Command> commands = {add_field_build(*group), add_field_query(*group)};
+  const std::vector<Command> commands = {add_field_build(*group), add_field_live(*group),
+                                         add_field_query(*group)};
   return {group, [commands] {
             for (const Command& command : commands)
               if (command.app->parsed()) return command.run();

@@ -15,9 +15,9 @@
 #include <thread>
 
 #include "cli/command.h"
+#include "cli/field_grid_option.h"
 #include "cli/field_pictures.h"
 #include "cli/field_walk.h"
-#include "cli/number_list.h"
 #include "cli/progress.h"
 #include "cli/stop_notice.h"
 #include "field/field_builder.h"
@@ -34,7 +34,6 @@
 namespace lightwell::cli {
 namespace {
 
-constexpr int kMostPointsASide = 4096;
 constexpr int kMostDirections = 1 << 20;
 
 struct BuildArguments {
@@ -47,29 +46,6 @@ struct BuildArguments {
   double max_error = 0;
   bool json = false;
 };
-
-Result<FieldGrid> grid_of(const BuildArguments& o) {
-  FieldGrid grid;
-  const auto size = number_list(o.grid, 3);
-  const auto whole = [](double n) { return n == std::floor(n) && n >= 2 && n <= kMostPointsASide; };
-  if (!size || !std::all_of(size->begin(), size->end(), whole))
-    return usage("--grid is " + o.grid + ", allowed: NX,NY,NZ, whole numbers from 2 to " +
-                 std::to_string(kMostPointsASide));
-  const auto bounds = number_list(o.bounds, 6);
-  if (!bounds)
-    return usage("--bounds is " + o.bounds + ", allowed: X0,Y0,Z0,X1,Y1,Z1, six numbers in metres");
-  for (std::size_t a = 0; a < 3; ++a) {
-    grid.size[a] = static_cast<int>((*size)[a]);
-    const auto axis = static_cast<Eigen::Index>(a);
-    grid.low[axis] = (*bounds)[a];
-    grid.high[axis] = (*bounds)[a + 3];
-    if (!(grid.high[axis] > grid.low[axis]) || !(std::abs(grid.low[axis]) <= 1e5) ||
-        !(std::abs(grid.high[axis]) <= 1e5))
-      return usage("--bounds is " + o.bounds +
-                   ", allowed: X0 < X1, Y0 < Y1, Z0 < Z1, -100000 to 100000 metres");
-  }
-  return grid;
-}
 
 // What the kernel says can be had without swapping; none where it does not say.
 std::optional<double> available_memory_bytes() {
@@ -191,7 +167,7 @@ Status prepare_walk(const BuildArguments& o, bool speaks, Prepared& prepared) {
 Result<Prepared> prepare(const BuildArguments& o, FieldRanks& ranks) {
   Prepared prepared;
   FieldBuildOptions& options = prepared.options;
-  const auto grid = grid_of(o);
+  const auto grid = field_grid(o.grid, o.bounds);
   if (!grid) return grid.error();
   options.grid = *grid;
   if (o.method != "best" && o.method != "low")

@@ -32,14 +32,13 @@ std::int64_t ns_of(Clock::time_point t) {
 
 Result<simulator::ProbeSetup> set_up(const std::string& name, const CaptureOptions& options) {
   simulator::ProbeOptions wanted;
-  const auto scenarios = simulator::scenario_names();
-  if (std::find(scenarios.begin(), scenarios.end(), name) != scenarios.end()) {
+  if (simulator::names_scenario(name)) {
     wanted.scenario = name;
   } else if (name.find_first_of("./") != std::string::npos) {
     wanted.environments = {name};
   } else {
     std::string allowed;
-    for (const std::string_view s : scenarios) allowed += std::string(s) + ", ";
+    for (const std::string_view s : simulator::scenario_names()) allowed += std::string(s) + ", ";
     return Error{ErrorKind::usage, "source simulated:" + name + ": allowed " + allowed + "or an image file"};
   }
   if (options.width > 0) wanted.width = options.width;

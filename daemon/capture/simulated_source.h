@@ -12,7 +12,7 @@
 namespace lightwell {
 
 // The simulated probe camera inside this process: same scenes, lens and sensor as lightwell-camera, no network.
-// name: a scenario (day, studio, flicker, walk, static) or the path of an environment image.
+// name: a scenario (day, studio, flicker, walk, static, stage, stage@X,Y,Z) or the path of an environment image.
 // Options honoured: width, height (640×480 where 0), pixel_format (Mono12), rate_hz (30), exposure_us (the scene's own),
 // buffers. Scene time starts with start(); frames leave at the end of their exposure, at multiples of the period.
 // usage: unknown name, size, format or rate out of range; bad_input: an image that cannot be read.

@@ -55,7 +55,8 @@ void declare(CLI::App& app, CommandLine& c) {
       ->capture_default_str();
   auto* environment =
       app.add_option("--environment", c.probe.environments, "Environment images (EXR, HDR), shown in turn");
-  auto* scenario = app.add_option("--scenario", c.probe.scenario, "day, studio, flicker, walk or static");
+  auto* scenario = app.add_option("--scenario", c.probe.scenario,
+                                  "day, studio, flicker, walk, static, stage or stage@X,Y,Z");
   scenario->capture_default_str();
   environment->excludes(scenario);
   app.add_option("--hold", c.probe.hold_s, "Seconds that each environment is shown")->capture_default_str();

@@ -7,11 +7,28 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 namespace lightwell::simulator {
 namespace {
 
-constexpr std::array<std::string_view, 5> kScenarios = {"day", "studio", "flicker", "walk", "static"};
+constexpr std::array<std::string_view, 6> kScenarios = {"day",  "studio", "flicker",
+                                                        "walk", "static", "stage"};
+constexpr std::string_view kStageAt = "stage@";
+
+Result<std::shared_ptr<const Scene>> make_stage_at(const std::string& name) {
+  // A hand's breadth inside walls and ceiling.
+  const Vec3d low(-2.9, 0, -2.4), high(2.9, 1.4, 2.4);
+  Vec3d at;
+  int used = 0;
+  const std::string place = name.substr(kStageAt.size());
+  if (std::sscanf(place.c_str(), "%lf,%lf,%lf%n", &at[0], &at[1], &at[2], &used) != 3 ||
+      used != static_cast<int>(place.size()) || !((at - low).minCoeff() >= 0 && (high - at).minCoeff() >= 0))
+    return Error{
+        ErrorKind::usage,
+        "scenario = " + name + ": allowed stage@X,Y,Z, metres, X -2.9 to 2.9, Y 0 to 1.4, Z -2.4 to 2.4"};
+  return make_stage_scene(at);
+}
 
 }  // namespace
 
@@ -62,12 +79,19 @@ std::span<const std::string_view> scenario_names() {
   return kScenarios;
 }
 
+bool names_scenario(std::string_view name) {
+  return name.starts_with(kStageAt) ||
+         std::find(kScenarios.begin(), kScenarios.end(), name) != kScenarios.end();
+}
+
 Result<std::shared_ptr<const Scene>> make_scenario(const std::string& name) {
   if (name == "day") return make_day_scene();
   if (name == "studio") return make_studio_scene(true);
   if (name == "static") return make_studio_scene(false);
   if (name == "flicker") return make_flicker_scene();
   if (name == "walk") return make_walk_scene();
+  if (name == "stage") return make_stage_scene(Vec3d::Zero());
+  if (name.starts_with(kStageAt)) return make_stage_at(name);
   std::string allowed;
   for (const std::string_view s : kScenarios) allowed += (allowed.empty() ? "" : ", ") + std::string(s);
   return Error{ErrorKind::usage, "scenario = " + name + ": allowed " + allowed};

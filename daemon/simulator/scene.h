@@ -73,9 +73,12 @@ class Scene {
   [[nodiscard]] virtual double default_exposure_us() const { return 10000; }
 };
 
-// day | studio | flicker | walk | static
+// day | studio | flicker | walk | static | stage
 std::span<const std::string_view> scenario_names();
-// Fails with usage for any other name, naming the allowed ones.
+// Whether make_scenario takes the name for a scenario, be it well written or not.
+bool names_scenario(std::string_view name);
+// "stage@X,Y,Z" is the stage from that place, metres; "stage" from its middle. Fails with usage for any other name,
+// naming the allowed ones.
 Result<std::shared_ptr<const Scene>> make_scenario(const std::string& name);
 
 // Environment images shown in turn, each for hold_s seconds, then from the beginning. messages: one line for
@@ -90,5 +93,7 @@ std::shared_ptr<const Scene> make_day_scene();
 std::shared_ptr<const Scene> make_studio_scene(bool moving);
 std::shared_ptr<const Scene> make_flicker_scene();
 std::shared_ptr<const Scene> make_walk_scene();
+// position_m: inside the room of daemon/simulator/walk_stage.h, above the ground
+std::shared_ptr<const Scene> make_stage_scene(const Vec3d& position_m);
 
 }  // namespace lightwell::simulator

@@ -56,7 +56,7 @@ LiveSums::LiveSums(const FieldGrid& grid, int degree, std::span<const RayKriging
 // Three channels of a direction at all points of slab z.
 void LiveSums::look_up_slab(const Direction& direction, int z, float* out) const {
   const auto& kernels = live_kernel::kernels();
-  const auto [nx, ny, nz] = grid_.size;
+  const int nx = grid_.size[0], ny = grid_.size[1];
   const auto run = [&](const Vec2d& at, int count, int stride, float* to) {
     const double left = std::floor(at.x()), top = std::floor(at.y());
     const auto fx = static_cast<float>(at.x() - left), fy = static_cast<float>(at.y() - top);

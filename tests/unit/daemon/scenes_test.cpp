@@ -92,7 +92,8 @@ TEST_P(Scenario, ShowsNoClippedPixel) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Simulator, Scenario, testing::Values("day", "studio", "flicker", "walk", "static"),
+INSTANTIATE_TEST_SUITE_P(Simulator, Scenario,
+                         testing::Values("day", "studio", "flicker", "walk", "static", "stage"),
                          [](const auto& scenario) { return std::string(scenario.param); });
 
 TEST(Scenes, UnknownNameIsUsageAndNamesTheAllowedOnes) {
@@ -100,6 +101,19 @@ TEST(Scenes, UnknownNameIsUsageAndNamesTheAllowedOnes) {
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().kind, ErrorKind::usage);
   EXPECT_NE(made.error().message.find("flicker"), std::string::npos);
+}
+
+TEST(Scenes, TheStageIsSeenFromWhereItIsAsked) {
+  const auto from = [](const std::string& name) { return (*make_scenario(name))->at(0, 1); };
+  EXPECT_EQ(from("stage@0.5,0.3,-1").position_m, Vec3d(0.5, 0.3, -1));
+  EXPECT_EQ(from("stage").position_m, Vec3d(0, 0, 0));
+  EXPECT_NE(from("stage@0.5,0.3,-1").lights[0].illuminance[0], from("stage").lights[0].illuminance[0]);
+  for (const char* wrong :
+       {"stage@", "stage@1,2", "stage@1,0,0,", "stage@3,0,0", "stage@0,-0.1,0", "stage@nan,0,0"}) {
+    const auto made = make_scenario(wrong);
+    ASSERT_FALSE(made) << wrong;
+    EXPECT_EQ(made.error().kind, ErrorKind::usage);
+  }
 }
 
 TEST(Scenes, StaticNeverChangesAndTheOthersDo) {
