@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "lighting/field/gaussian_splat.h"
-#include "lighting/field/moving_least_squares.h"
 #include "lighting/result.h"
 
 namespace lightwell {
@@ -54,7 +53,7 @@ void DirectionEstimator::estimate(const MeasuredDirection& direction, std::span<
     return;
   }
   nearest_.build(samples_);
-  moving_least_squares(out.plane, nearest_, support_, out.image);
+  fits_.fit(out.plane, nearest_, support_, out.image);
 }
 
 void DirectionEstimator::hold_out(const MeasuredDirection& direction, std::span<const Rgb> radiance,

@@ -7,6 +7,7 @@
 
 #include "lighting/field/direction_bins.h"
 #include "lighting/field/field_sums.h"
+#include "lighting/field/moving_least_squares.h"
 #include "lighting/field/nearest_samples.h"
 #include "lighting/field/support_choice.h"
 
@@ -38,6 +39,7 @@ class DirectionEstimator {
   int pixels_a_cell_;
   std::vector<PlaneSample> samples_;
   NearestSamples nearest_;
+  MovingLeastSquares fits_;
 };
 
 }  // namespace lightwell

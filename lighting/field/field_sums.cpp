@@ -5,59 +5,63 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
+#include "lighting/field/field_kernel/kernel.h"
 #include "lighting/result.h"
 
 namespace lightwell {
 namespace {
 
-// A run of grid points in the plane: `count` of them, `step` pixels apart from (x, y) on, which all have one fraction of
-// a pixel. Written `stride` apart.
-struct Run {
-  double x, y;
-  int count, step, stride;
+using field_kernel::kColumn;
+using field_kernel::kLanes;
+using field_kernel::Pixels;
+using field_kernel::Run;
+
+constexpr int kBlockPoints = 512;  // whose values of a batch stay in the cache
+
+// Rows of a slab, from y0 on.
+struct Block {
+  int y0, rows;
 };
 
-void interpolate_run(const float* pixels, int width, const Run& run, float* out) {
-  const double left = std::floor(run.x), top = std::floor(run.y);
-  const auto fx = static_cast<float>(run.x - left), fy = static_cast<float>(run.y - top);
-  const float w00 = (1 - fx) * (1 - fy), w10 = fx * (1 - fy), w01 = (1 - fx) * fy, w11 = fx * fy;
-  const float* upper = pixels + static_cast<std::ptrdiff_t>(top) * width + static_cast<std::ptrdiff_t>(left);
-  const float* lower = upper + width;
-  if (run.step == 1 && run.stride == 1) {
-    for (int i = 0; i < run.count; ++i)
-      out[i] = w00 * upper[i] + w10 * upper[i + 1] + w01 * lower[i] + w11 * lower[i + 1];
+// One direction at the points of a block of slab z: [4 channels][stride], points as they lie in the slab.
+void look_up(const FieldDirection& direction, const FieldGrid& grid, int z, const Block& block, float* out,
+             int stride) {
+  const field_kernel::Kernels& kernels = field_kernel::kernels();
+  const ShearPlane& plane = direction.plane;
+  const int width = direction.image.width, step = plane.pixels_a_cell(), nx = grid.size[0];
+  const auto origin = [&](int slice) { return plane.slice_origin(slice).cwiseMax(0.0).eval(); };
+  const auto pixels = [&](int channel) { return Pixels{direction.image.channel(channel), width}; };
+  if (plane.axes()[2] == 0) {  // the plane is (y, z): a run goes along y
+    const auto run_at = [&](int x) {
+      const Vec2d at = origin(x);
+      return Run{at.x() + block.y0 * step, at.y() + z * step, block.rows, step};
+    };
+    std::vector<float> run_values(static_cast<std::size_t>(block.rows + kLanes));
+    int x = 0;
+    if (block.rows == kLanes)
+      for (; x + kLanes <= nx; x += kLanes) {
+        Run runs[kLanes];
+        for (int i = 0; i < kLanes; ++i) runs[i] = run_at(x + i);
+        for (int c = 0; c < 4; ++c) kernels.interpolate_across(pixels(c), runs, out + c * stride + x, nx);
+      }
+    for (; x < nx; ++x) {
+      const Run run = run_at(x);
+      for (int c = 0; c < 4; ++c) {
+        kernels.interpolate(pixels(c), run, run_values.data());
+        for (int y = 0; y < block.rows; ++y)
+          out[c * stride + y * nx + x] = run_values[static_cast<std::size_t>(y)];
+      }
+    }
     return;
   }
-  for (int i = 0; i < run.count; ++i, upper += run.step, lower += run.step, out += run.stride)
-    *out = w00 * upper[0] + w10 * upper[1] + w01 * lower[0] + w11 * lower[1];
-}
-
-// One channel of a direction at all points of slab z.
-void look_up(const FieldDirection& direction, const FieldGrid& grid, int channel, int z, float* out) {
-  const ShearPlane& plane = direction.plane;
-  const float* pixels = direction.image.channel(channel);
-  const int width = direction.image.width, step = plane.pixels_a_cell();
-  const auto [nx, ny, nz] = grid.size;
-  const auto origin = [&](int slice) { return plane.slice_origin(slice).cwiseMax(0.0).eval(); };
-  switch (plane.axes()[2]) {
-    case 0:  // the plane is (y, z): a run goes along y
-      for (int x = 0; x < nx; ++x) {
-        const Vec2d at = origin(x);
-        interpolate_run(pixels, width, {at.x(), at.y() + z * step, ny, step, nx}, out + x);
-      }
-      break;
-    case 1:  // (x, z)
-      for (int y = 0; y < ny; ++y) {
-        const Vec2d at = origin(y);
-        interpolate_run(pixels, width, {at.x(), at.y() + z * step, nx, step, 1}, out + y * nx);
-      }
-      break;
-    default: {  // (x, y)
-      const Vec2d at = origin(z);
-      for (int y = 0; y < ny; ++y)
-        interpolate_run(pixels, width, {at.x(), at.y() + y * step, nx, step, 1}, out + y * nx);
-    }
+  const bool across_y = plane.axes()[2] == 1;  // the plane is (x, z), else (x, y)
+  Vec2d at = across_y ? Vec2d::Zero() : origin(z);
+  for (int y = 0; y < block.rows; ++y) {
+    if (across_y) at = origin(block.y0 + y);
+    const Run run = {at.x(), at.y() + (across_y ? z : block.y0 + y) * step, nx, step};
+    for (int c = 0; c < 4; ++c) kernels.interpolate(pixels(c), run, out + c * stride + y * nx);
   }
 }
 
@@ -80,22 +84,41 @@ double FieldSums::bytes_needed(const FieldGrid& grid, int degree) {
 }
 
 void FieldSums::add(std::span<const FieldDirection> batch, int z) {
-  const auto points = static_cast<Eigen::Index>(field_.slab_points());
-  const auto directions = static_cast<Eigen::Index>(batch.size());
-  const Eigen::Index count = harmonic_count(degree_);
-  Eigen::MatrixXf radiance(3 * points, directions), weights(directions, count);
-  Eigen::VectorXf known(points);
-  Eigen::Map<Eigen::VectorXf> confidence(field_.confidence.data() + static_cast<Eigen::Index>(z) * points,
-                                         points);
-  for (Eigen::Index i = 0; i < directions; ++i) {
-    const FieldDirection& direction = batch[static_cast<std::size_t>(i)];
-    for (int c = 0; c < 3; ++c) look_up(direction, grid_, c, z, radiance.col(i).data() + c * points);
-    weights.row(i) = direction.harmonics.transpose();
-    look_up(direction, grid_, 3, z, known.data());
-    confidence += direction.known_share * known;
+  const field_kernel::Kernels& kernels = field_kernel::kernels();
+  const int nx = grid_.size[0], ny = grid_.size[1], harmonics = harmonic_count(degree_);
+  const auto directions = static_cast<int>(batch.size());
+  std::vector<float> weights, known;
+  for (const FieldDirection& direction : batch) {
+    weights.insert(weights.end(), direction.harmonics.begin(), direction.harmonics.end());
+    known.push_back(direction.known_share);
   }
-  Eigen::Map<Eigen::MatrixXf> sums(field_.plane(z, 0, 0), 3 * points, count);
-  sums.noalias() += radiance * weights;
+  // Rows by eight, as runs along y come.
+  const int most_rows = std::max(kLanes, kBlockPoints / nx / kLanes * kLanes);
+  const int columns = (most_rows * nx + kColumn - 1) / kColumn, stride = columns * kColumn + kLanes;
+  std::vector<float> row(4 * static_cast<std::size_t>(stride));
+  // [channel][column][direction][kColumn]
+  const std::ptrdiff_t column_size = static_cast<std::ptrdiff_t>(directions) * kColumn;
+  std::vector<float> values(4 * static_cast<std::size_t>(columns * column_size));
+  const auto slab = static_cast<long>(field_.slab_points());
+  for (int y0 = 0; y0 < ny; y0 += most_rows) {
+    const Block block = {y0, std::min(most_rows, ny - y0)};
+    const int points = block.rows * nx, used = (points + kColumn - 1) / kColumn;
+    for (int d = 0; d < directions; ++d) {
+      look_up(batch[static_cast<std::size_t>(d)], grid_, z, block, row.data(), stride);
+      for (int c = 0; c < 4; ++c)
+        for (int i = 0; i < used; ++i)
+          std::copy_n(row.data() + c * stride + i * kColumn, kColumn,
+                      values.data() + (c * columns + i) * column_size + d * kColumn);
+    }
+    for (int i = 0; i < used; ++i) {
+      const int first = y0 * nx + i * kColumn, count = std::min(kColumn, points - i * kColumn);
+      for (int c = 0; c < 3; ++c)
+        kernels.add_products(values.data() + (c * columns + i) * column_size, weights.data(), directions,
+                             harmonics, field_.plane(z, 0, c) + first, 3 * slab, count);
+      kernels.add_products(values.data() + (3 * columns + i) * column_size, known.data(), directions, 1,
+                           field_.confidence.data() + z * slab + first, slab, count);
+    }
+  }
 }
 
 std::span<const float> FieldSums::radiance(int z) const {

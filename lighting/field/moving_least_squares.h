@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <limits>
+#include <vector>
 
 #include "lighting/field/nearest_samples.h"
 #include "lighting/field/shear_plane.h"
@@ -24,8 +26,19 @@ inline constexpr std::uint32_t kNoSample = std::numeric_limits<std::uint32_t>::m
 LocalFit fit_locally(NearestSamples& samples, const Eigen::Vector2f& at, int support,
                      std::uint32_t left_out = kNoSample);
 
-// A fit at every pixel of the plane; known where a ray passes within kNearCells. image is sized to the plane.
-// samples: at least one.
-void moving_least_squares(const ShearPlane& plane, NearestSamples& samples, int support, PlaneImage& image);
+// The same, but for rounding, at every pixel of the plane that a grid point reads, the others 0; known where a ray passes within kNearCells. image is sized to the plane.
+// samples: at least one. Keeps scratch memory: for one thread at a time.
+class MovingLeastSquares {
+ public:
+  void fit(const ShearPlane& plane, NearestSamples& samples, int support, PlaneImage& image);
+
+ private:
+  class Tile;
+  // bound: within it of the tile's middle lie more rays than the support. Returns the least such distance.
+  float fit_tile(const Tile& tile, float bound, NearestSamples& samples, int support, PlaneImage& image);
+  RayList around_, near_;
+  std::vector<float> squares_;
+  std::vector<std::array<int, 2>> columns_;
+};
 
 }  // namespace lightwell

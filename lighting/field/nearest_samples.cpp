@@ -15,6 +15,10 @@ constexpr float kSamplesABin = 2;
 
 }  // namespace
 
+float NearestSamples::spacing() const {
+  return width_ / std::sqrt(kSamplesABin);
+}
+
 int NearestSamples::bin_along(int axis, float value) const {
   const float bin = (value - low_[axis]) / width_;
   return static_cast<int>(
@@ -44,11 +48,16 @@ void NearestSamples::build(std::span<const PlaneSample> samples) {
   }
   for (std::size_t b = 1; b < first_.size(); ++b) first_[b] += first_[b - 1];
   order_.resize(samples.size());
-  place_.resize(samples.size());
+  sorted_.reserve(samples.size());
+  const field_kernel::Rays sorted = sorted_.rays();
   for (std::size_t i = samples.size(); i-- > 0;) {  // from behind: each bin's end moves down to its beginning
     const std::uint32_t slot = --first_[bin_[i] + 1];
     order_[slot] = static_cast<std::uint32_t>(i);
-    place_[slot] = samples[i].at;
+    sorted.x[slot] = samples[i].at.x();
+    sorted.y[slot] = samples[i].at.y();
+    sorted.red[slot] = samples[i].radiance[0];
+    sorted.green[slot] = samples[i].radiance[1];
+    sorted.blue[slot] = samples[i].radiance[2];
   }
   // Each entry has become the beginning of the bin before it.
   first_.erase(first_.begin());
@@ -61,9 +70,26 @@ void NearestSamples::gather(int x0, int x1, int y, const Eigen::Vector2f& at) {
   x1 = std::min(x1, size_[0] - 1);
   if (x0 > x1) return;
   const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(size_[0]);
+  const field_kernel::Rays sorted = sorted_.rays();
   for (std::uint32_t i = first_[row + static_cast<std::size_t>(x0)];
-       i < first_[row + static_cast<std::size_t>(x1) + 1]; ++i)
-    found_.push_back({(place_[i] - at).squaredNorm(), order_[i]});
+       i < first_[row + static_cast<std::size_t>(x1) + 1]; ++i) {
+    const Eigen::Vector2f offset(sorted.x[i] - at.x(), sorted.y[i] - at.y());
+    found_.push_back({offset.squaredNorm(), order_[i]});
+  }
+}
+
+int NearestSamples::within(const Eigen::Vector2f& at, float distance, const field_kernel::Rays& to) {
+  const int x0 = bin_along(0, at.x() - distance), x1 = bin_along(0, at.x() + distance);
+  const int y0 = bin_along(1, at.y() - distance), y1 = bin_along(1, at.y() + distance);
+  int count = 0;
+  for (int y = y0; y <= y1; ++y) {  // the bins of a row lie one after the other
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(size_[0]);
+    const std::uint32_t first = first_[row + static_cast<std::size_t>(x0)];
+    const std::uint32_t end = first_[row + static_cast<std::size_t>(x1) + 1];
+    count = field_kernel::kernels().within(sorted_.rays_from(first), static_cast<int>(end - first), at.x(),
+                                           at.y(), distance * distance, to, count);
+  }
+  return count;
 }
 
 std::span<const NearestSamples::Neighbour> NearestSamples::find(const Eigen::Vector2f& at,

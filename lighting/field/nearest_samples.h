@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "lighting/field/ray_list.h"
 #include "lighting/field/shear_plane.h"
 
 namespace lightwell {
@@ -23,6 +24,12 @@ class NearestSamples {
   // and the one after them is the nearest of the rest. Valid until the next call.
   std::span<const Neighbour> find(const Eigen::Vector2f& at, std::size_t count);
 
+  // All samples within a distance, cells, to the beginning of `to`, which has room for all samples; returns their number.
+  int within(const Eigen::Vector2f& at, float distance, const field_kernel::Rays& to);
+
+  // Side of a square that holds one sample in the mean.
+  [[nodiscard]] float spacing() const;
+
   [[nodiscard]] std::span<const PlaneSample> samples() const { return samples_; }
 
  private:
@@ -30,7 +37,7 @@ class NearestSamples {
   void gather(int x0, int x1, int y, const Eigen::Vector2f& at);
   std::span<const PlaneSample> samples_;
   std::vector<std::uint32_t> first_, order_, bin_;
-  std::vector<Eigen::Vector2f> place_;  // in the bins' order
+  RayList sorted_;  // in the bins' order
   std::vector<Neighbour> found_;
   Eigen::Vector2f low_ = Eigen::Vector2f::Zero();
   float width_ = 1;

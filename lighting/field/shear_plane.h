@@ -28,12 +28,16 @@ class ShearPlane {
   [[nodiscard]] Vec2d pixel_of(const Vec3d& grid_position) const;
   // Pixels to lengths across the direction in cells: |across(a) − across(b)| is the distance of two rays.
   [[nodiscard]] Vec2d across(const Vec2d& pixel) const { return across_from_pixel_ * pixel; }
+  // The pixels that look-ups at grid points read: of each row the first column and one past the last. What lies outside
+  // belongs to no grid point. Sized to height().
+  void read_columns(std::vector<std::array<int, 2>>& rows) const;
   // By how many pixels the grid points of a slice across axes()[2] lie beside those of slice 0 … in pixels of point (0, 0).
   [[nodiscard]] Vec2d slice_origin(int slice) const;
 
  private:
   std::array<int, 3> axes_;
-  std::array<int, 2> size_;
+  std::array<int, 2> size_, points_;
+  int slices_;
   int pixels_a_cell_;
   double middle_;
   Vec2d slope_, start_;
@@ -43,7 +47,9 @@ class ShearPlane {
 // What one direction holds across the plane: radiance, and 1 where a measured ray passes near (else 0).
 struct PlaneImage {
   int width = 0, height = 0;
-  std::vector<float> channels;  // [4][height][width]: R, G, B, known
+  static constexpr std::size_t kBehind =
+      16;                       // numbers that those who read many at once may read behind the last
+  std::vector<float> channels;  // [4][height][width]: R, G, B, known; then those
 
   void resize(int w, int h);
   [[nodiscard]] std::size_t pixels() const {

@@ -94,7 +94,7 @@ TEST(MovingLeastSquares, AreNeverNegativeAndKnownWhereARayIsNear) {
   NearestSamples nearest;
   nearest.build(samples);
   PlaneImage image;
-  moving_least_squares(plane, nearest, 9, image);
+  MovingLeastSquares().fit(plane, nearest, 9, image);
   for (std::size_t i = 0; i < 3 * image.pixels(); ++i) EXPECT_GE(image.channels[i], 0);
   const auto known = [&](int x, int y) { return image.channel(3)[y * image.width + x]; };
   EXPECT_EQ(known(4, 5), 1);  // a cell from the last ray
