@@ -8,6 +8,7 @@
 #include "cli/record.h"
 #include "daemon/capture/capture_source.h"
 #include "daemon/capture/recording_source.h"
+#include "daemon/capture/simulated_source.h"
 #include "daemon/record/pose_recorder.h"
 #include "daemon/record/recorder.h"
 #include "interface/calibration_io.h"
@@ -22,9 +23,9 @@ Error failed(const RecordOptions& options, const std::string& what) {
   return {ErrorKind::failed, options.out.string() + ": " + what};
 }
 
-// The folder's, or the one attached to the take that is the source; empty: none.
+// The folder's, or the one that the source knows: attached to a take, a simulated camera's own; empty: none.
 Result<std::string> calibration_text(const RecordOptions& options) {
-  constexpr std::string_view kRecording = "recording:";
+  constexpr std::string_view kRecording = "recording:", kSimulated = "simulated:";
   if (!options.calibration.empty()) {
     const auto calibration = read_calibration(options.calibration);
     if (!calibration) return calibration.error();
@@ -34,6 +35,11 @@ Result<std::string> calibration_text(const RecordOptions& options) {
     const auto reader = RecordingReader::open(options.source.substr(kRecording.size()));
     if (!reader) return reader.error();
     return (*reader)->header().calibration_json;
+  }
+  if (options.source.starts_with(kSimulated)) {
+    const auto calibration = simulated_calibration(options.source.substr(kSimulated.size()), {});
+    if (!calibration) return calibration.error();
+    return calibration_to_json(*calibration);
   }
   return std::string();
 }

@@ -64,6 +64,8 @@ TEST_F(FieldOfWalk, AWalkWithATrackerBecomesTheLightThatWasThere) {
   ASSERT_TRUE(camera_->wait_for_end());
   const Words lanes = {"--grid", "17,2,3", "--bounds=-0.8,0,-0.8,0.8,0.1,-0.7", "--calibration",
                        calibration().string()};
+  expect_refused(build({lanes[0], lanes[1], lanes[2], "--out", field()}), 3,
+                 "has no calibration attached: allowed with --calibration DIR");
   const auto build_late_by = [&](const char* lag_ms) {
     Words options = lanes;
     for (const char* word : {"--lag", lag_ms, "--out"}) options.emplace_back(word);
@@ -91,11 +93,10 @@ TEST_F(FieldOfWalk, AWalkWithATrackerBecomesTheLightThatWasThere) {
   EXPECT_NEAR(report["coverage"], 0.5, 1e-3);
 }
 
-TEST_F(FieldOfWalk, ASimulatedWalkNeedsNothingButItsCalibration) {
+TEST_F(FieldOfWalk, ASimulatedWalkNeedsNothing) {
   const auto recorded = record({"--seconds", "1.5", "--source", "simulated:walk"});
   ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
   const Words grid = {"--grid", "4,2,2", "--bounds=-0.8,0,-0.85,-0.2,0.1,-0.75", "--out", field()};
-  expect_refused(build(grid), 3, "has no calibration attached: allowed with --calibration DIR");
   const auto with = [&](const Words& more) {
     Words all = grid;
     all.insert(all.end(), more.begin(), more.end());
@@ -110,6 +111,7 @@ TEST_F(FieldOfWalk, ASimulatedWalkNeedsNothingButItsCalibration) {
   const auto other = run_process(program("lightwell"), {"field", "build", list, "--grid", "2,2,2", "--bounds",
                                                         "0,0,0,1,1,1", "--out", field(), "--lag", "3"});
   expect_refused(other, 2, "--lag needs a recording");
+  EXPECT_EQ(build(grid).exit_code, 0) << "its calibration is attached";
 }
 
 }  // namespace
