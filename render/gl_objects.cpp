@@ -13,7 +13,8 @@ namespace {
 constexpr std::string_view kHeader =
     "#version 310 es\n"
     "precision highp float;\nprecision highp int;\n"
-    "precision highp sampler2D;\nprecision highp sampler2DShadow;\nprecision highp usampler2D;\n";
+    "precision highp sampler2D;\nprecision highp sampler2DShadow;\nprecision highp usampler2D;\n"
+    "precision highp sampler3D;\nprecision highp sampler2DArray;\n";
 
 Error shader_error(const std::string& name, std::string log) {
   std::replace(log.begin(), log.end(), '\n', ' ');

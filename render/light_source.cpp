@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "interface/environment_io.h"
+#include "interface/field_file.h"
 #include "interface/printable.h"
 #include "lighting/decomposition/best_lights.h"
 
@@ -17,6 +18,17 @@ class FixedLights final : public LightSource {
  public:
   explicit FixedLights(LightSet lights) { lights_ = std::move(lights); }
   Result<bool> update(int frame, std::chrono::milliseconds /*wait*/) override { return frame == 0; }
+};
+
+class FieldLight final : public LightSource {
+ public:
+  explicit FieldLight(LightField field) : field_(std::move(field)) {}
+  Result<bool> update(int frame, std::chrono::milliseconds /*wait*/) override { return frame == 0; }
+  [[nodiscard]] const LightField* field() const override { return &field_; }
+  [[nodiscard]] int field_version() const override { return 1; }
+
+ private:
+  LightField field_;
 };
 
 class EnvironmentLights final : public LightSource {
@@ -124,6 +136,12 @@ class LiveLights final : public LightSource {
 std::unique_ptr<LightSource> fixed_lights(const LightSet& lights, int max_lights) {
   return std::make_unique<FixedLights>(
       max_lights > 0 ? take_lights(lights, static_cast<std::size_t>(max_lights)) : lights);
+}
+
+Result<std::unique_ptr<LightSource>> field_light(const std::filesystem::path& file) {
+  auto read = read_field(file);
+  if (!read) return read.error();
+  return std::unique_ptr<LightSource>(std::make_unique<FieldLight>(std::move(read->field)));
 }
 
 Result<std::unique_ptr<LightSource>> environment_lights(const EnvironmentOptions& options) {

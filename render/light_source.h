@@ -10,6 +10,7 @@
 
 #include "interface/dds_topics.h"
 #include "lighting/decomposition/decompose.h"
+#include "lighting/field/light_field.h"
 #include "lighting/lat_long_image.h"
 #include "lighting/light_set.h"
 
@@ -30,6 +31,10 @@ class LightSource {
   [[nodiscard]] virtual double environment_turn_rad() const { return 0; }
   // Another number for another picture; 0: none yet.
   [[nodiscard]] virtual int environment_version() const { return 0; }
+  // Light that differs from place to place, in place of lights(); nullptr: none.
+  [[nodiscard]] virtual const LightField* field() const { return nullptr; }
+  // Another number for another field; 0: none yet.
+  [[nodiscard]] virtual int field_version() const { return 0; }
   // Time since the light arrived, for live light.
   [[nodiscard]] virtual std::optional<std::chrono::nanoseconds> age() const { return std::nullopt; }
 
@@ -39,6 +44,9 @@ class LightSource {
 
 // A light set that stays as it is. max_lights: fold to so many; 0: all.
 std::unique_ptr<LightSource> fixed_lights(const LightSet& lights, int max_lights);
+
+// A light field that stays as it is. bad_input: the file.
+Result<std::unique_ptr<LightSource>> field_light(const std::filesystem::path& file);
 
 struct EnvironmentOptions {
   std::filesystem::path file;

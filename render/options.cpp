@@ -10,6 +10,7 @@
 #include "interface/option_range.h"
 #include "interface/printable.h"
 #include "interface/same_file.h"
+#include "lighting/field/main_lights.h"
 
 namespace lightwell::render {
 namespace {
@@ -68,6 +69,16 @@ Parsed parse_options(int argc, const char* const* argv) {
                                      "light from a latitude–longitude image, EXR or Radiance HDR")
                           ->excludes(live)
                           ->excludes("--light-set");
+  auto* field = app.add_option("--field", options.field,
+                               "light that differs from place to place, of lightwell field build (OpenVDB)")
+                    ->excludes(live)
+                    ->excludes("--light-set")
+                    ->excludes(environment);
+  app.add_option("--field-shadows", options.field_shadows,
+                 "so many main lights of the field cast shadows; 0: none does")
+      ->check(whole_numbers(0, kMostMainLights))
+      ->capture_default_str()
+      ->needs(field);
   app.add_option("--lights", options.lights, "lights to make of the environment")
       ->check(whole_numbers(1, kMostLights))
       ->capture_default_str()
@@ -86,15 +97,18 @@ Parsed parse_options(int argc, const char* const* argv) {
       ->needs(environment);
   app.add_option("--shadow-maps", options.shadow_maps,
                  "most lights to render, each with its map (default: all; live 72)")
-      ->check(whole_numbers(1, 100000));
+      ->check(whole_numbers(1, 100000))
+      ->excludes(field);
   app.add_option("--target-fps", options.target_fps,
                  "holds this frame rate by fewer of the lights, the least urgent left out first, and smaller "
                  "shadow maps")
-      ->check(numbers_above_0_to(1000, "above 0 to 1000 frames a second"));
+      ->check(numbers_above_0_to(1000, "above 0 to 1000 frames a second"))
+      ->excludes(field);
   app.add_option("--max-error", options.max_error,
                  "takes the fewest lights whose predicted shadow error (relative) is below this; method best "
                  "predicts it")
-      ->check(numbers_above_0_to(10, "above 0 to 10"));
+      ->check(numbers_above_0_to(10, "above 0 to 10"))
+      ->excludes(field);
   app.add_option("--shadow-size", options.shadow_size, "texels a side of a shadow map")
       ->check(whole_numbers(16, 4096))
       ->capture_default_str();
@@ -153,7 +167,8 @@ Parsed parse_options(int argc, const char* const* argv) {
       ->needs("--sensor-height");
   app.add_flag("--probe", options.probe,
                "a grey ball (Lambertian, albedo 0.18) under the lights and a mirror ball of the environment, "
-               "in the lower left corner");
+               "in the lower left corner")
+      ->excludes(field);
   app.add_option("--tonemap", tone_map, "for window and PNG: reinhard, or none (clamped)")
       ->check(CLI::IsMember({"reinhard", "none"}))
       ->capture_default_str();
@@ -187,9 +202,9 @@ Parsed parse_options(int argc, const char* const* argv) {
     if (error.get_exit_code() == 0) return {std::nullopt, app.exit(error)};
     return {std::nullopt, complain(error.what())};
   }
-  if (!options.live && options.light_set.empty() && options.environment.empty())
-    return {std::nullopt,
-            complain("one of --live, --environment and --light-set must say where the light comes from")};
+  if (!options.live && options.light_set.empty() && options.environment.empty() && options.field.empty())
+    return {std::nullopt, complain("one of --live, --environment, --light-set and --field must say where the "
+                                   "light comes from")};
   const auto chosen = method_from_name(method);
   if (!chosen) return {std::nullopt, complain("--method " + method + ": must be one of " + method_names())};
   options.method = *chosen;
@@ -217,12 +232,14 @@ Parsed parse_options(int argc, const char* const* argv) {
   outputs.push_back(options.stats.string());
   for (const std::string& output : outputs)
     if (const Status other = check_output_is_no_input(
-            output, {options.scene, options.environment, options.light_set, options.plate});
+            output, {options.scene, options.environment, options.light_set, options.field, options.plate});
         !other)
       return {std::nullopt, complain(other.error().message)};
   if (options.background_environment && !options.light_set.empty())
     return {std::nullopt,
             complain("--background environment: a light set has no picture of its environment")};
+  if (options.background_environment && !options.field.empty())
+    return {std::nullopt, complain("--background environment: a field has no picture of its environment")};
   options.look.operation = tone_map == "none" ? ToneMap::none : ToneMap::reinhard;
   options.look.display = display == "rec709"   ? Display::rec709
                          : display == "linear" ? Display::linear

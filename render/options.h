@@ -23,6 +23,8 @@ struct Options {
   std::string interface = "lo";
   std::filesystem::path light_set;
   std::filesystem::path environment;
+  std::filesystem::path field;
+  int field_shadows = 4;  // main lights of a field that cast shadows
   int lights = 72;
   Method method = Method::best;
   Coverage coverage = Coverage::hemisphere;

@@ -48,10 +48,11 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   r.nothing_casts_ = atlas->empty() && cutouts->empty();
   auto tone_mapper = ToneMapper::create();
   if (!tone_mapper) return tone_mapper.error();
-  auto surfaces = SurfaceShading::create(scene, r.nothing_casts_,
-                                         {options.simplify_casters, options.soft_edges, options.interleave});
+  auto surfaces = SurfaceShading::create(
+      scene, r.nothing_casts_, {{options.simplify_casters, options.soft_edges}, options.interleave});
   if (!surfaces) return surfaces.error();
   if (Status s = surfaces->use_light_lists(options.light_lists); !s) return s.error();
+  r.kinds_ = material_kinds(scene);
   auto background = gl::make_program("fullscreen_vertex", "background_fragment");
   if (!background) return background.error();
   r.gbuffer_ = std::move(gbuffer).value();
@@ -143,14 +144,22 @@ Status Renderer::resize(Sums& sums) const {
 
 Status Renderer::set_shadows(bool on) {
   shadows_ = on;
-  return on ? Status() : surfaces_.make_unshadowed();
+  if (on) return {};
+  return field_ ? field_->make_unshadowed() : surfaces_.make_unshadowed();
+}
+
+Status Renderer::set_field(const LightField& field, MainLights main_lights) {
+  if (!field_)
+    field_ = FieldShading::create(kinds_, nothing_casts_, {options_.simplify_casters, options_.soft_edges});
+  if (Status s = field_->set(field, std::move(main_lights)); !s) return s;
+  return compositor_ || !shadows_ ? field_->make_unshadowed() : Status();
 }
 
 Status Renderer::set_plate(const Plate& plate, float white) {
   if (!compositor_) {
     auto compositor = Compositor::create();
     if (!compositor) return compositor.error();
-    if (Status s = surfaces_.make_unshadowed(); !s) return s;
+    if (Status s = field_ ? field_->make_unshadowed() : surfaces_.make_unshadowed(); !s) return s;
     compositor_.emplace(std::move(compositor).value());
     if (Status s = compositor_->resize(options_.width, options_.height); !s) return s;
     if (Status s = resize(unshadowed_sums_); !s) return s;
@@ -190,8 +199,9 @@ double Renderer::lap(double start, double& pass) const {
   return end;
 }
 
-Status Renderer::render(const LightSet& lights, const SceneCamera& camera, double environment_turn_rad) {
+Status Renderer::render(const LightSet& given, const SceneCamera& camera, double environment_turn_rad) {
   times_ = {};
+  const LightSet& lights = field_ ? field_->main_lights() : given;
   std::vector<LightRow> rows = make_light_rows(lights.lights, casters_);
   shadow_maps_ = nothing_casts_ ? 0 : rows.size();
   shadow_maps_drawn_ = 0;
@@ -225,14 +235,18 @@ Status Renderer::render_samples(std::span<LightRow> all, const LightSet& lights,
       const auto rows = turn.subspan(block.first, block.count);
       const bool first_block = first == 0 && block.first == 0;
       time = lap(time, times_.shadow_ms);
-      surfaces_.set_lights(rows, all, block.page);
+      const bool last_block = &block == &blocks->back() && first + turn.size() == all.size();
+      if (field_)
+        field_->set_lights(rows, block.page);
+      else
+        surfaces_.set_lights(rows, all, block.page);
       for (int sample = first_sample; sample < end_sample; ++sample) {
         const View view =
             make_view(camera, options_.width, options_.height, sample_offset(sample, options_.samples));
         // With one sample a pixel the G-buffer of the first block serves all blocks.
         if (first_block || samples > 1) gbuffer_.draw(view);
         time = lap(time, times_.gbuffer_ms);
-        shade({view, lights.ambient, first_block, weight}, start_sum, environment_turn_rad);
+        shade({view, lights.ambient, first_block, last_block, weight}, start_sum, environment_turn_rad);
         start_sum = false;
         time = lap(time, times_.shading_ms);
       }
@@ -285,8 +299,11 @@ void Renderer::shade_surfaces(bool shadows, Sums& sums, const SurfaceShading::Sa
                               bool start_sum) const {
   const GLuint so_far = sums.last().texture.id();
   sums.current = 1 - sums.current;
-  surfaces_.shade(shadows, sample, {sums.last().framebuffer.id(), so_far, start_sum}, gbuffer_, atlas_,
-                  casters_);
+  const SurfaceShading::Target target{sums.last().framebuffer.id(), so_far, start_sum, width(), height()};
+  if (field_)
+    field_->shade(shadows, sample, target, gbuffer_, atlas_, casters_);
+  else
+    surfaces_.shade(shadows, sample, target, gbuffer_, atlas_, casters_);
 }
 
 Status Renderer::lay_over(const RadiancePicture& picture, int left, int bottom) {

@@ -13,6 +13,7 @@
 #include "render/casters.h"
 #include "render/compositor.h"
 #include "render/cutout_casters.h"
+#include "render/field_shading.h"
 #include "render/gbuffer.h"
 #include "render/graphics_reset.h"
 #include "render/picture.h"
@@ -60,6 +61,11 @@ class Renderer {
   void set_environment(const LatLongImage* image);
   // Behind everything, with the objects' shadows on it (Compositor). white: radiance of the plate's 1.
   Status set_plate(const Plate& plate, float white);
+  // From now on render() takes this light field in place of its lights; its main lights cast shadows.
+  // bad_input: larger than the driver's 3D textures
+  Status set_field(const LightField& field, MainLights main_lights);
+  // nullptr: none is set.
+  [[nodiscard]] const FieldShading* field() const { return field_ ? &*field_ : nullptr; }
   // environment_turn_rad turns the shown environment about +Y (a light at azimuth λ comes to λ + angle).
   Status render(const LightSet& lights, const SceneCamera& camera, double environment_turn_rad = 0);
   // Puts opaque pixels of a picture over the last one rendered. left, bottom: pixels from its lower left corner.
@@ -142,6 +148,8 @@ class Renderer {
   Casters fine_casters_;                  // for maps larger than shadow_size
   Sphere fitted_objects_, fitted_scene_;  // what the maps in the atlas were drawn for
   SurfaceShading surfaces_;
+  MaterialKinds kinds_;
+  std::optional<FieldShading> field_;
   gl::Program background_;
   gl::Program lay_over_;  // made when it is first needed
   gl::VertexArray no_vertices_;

@@ -228,10 +228,27 @@ class Session {
     return renderer_->set_plate(plates_->plate(), plate_white_cd_m2_.value_or(1));
   }
 
+  // Its main lights are looked for where the objects are.
+  Status show_field() {
+    const LightField& field = *source_.field();
+    const Sphere& objects = renderer_->object_bounds();
+    const Vec3d centre = objects.centre.cast<double>(),
+                reach = Vec3d::Constant(static_cast<double>(objects.radius));
+    Status set = renderer_->set_field(
+        field, find_main_lights(field, options_.field_shadows, centre - reach, centre + reach));
+    if (!set) return Error{set.error().kind, options_.field.string() + ": " + set.error().message};
+    shown_field_ = source_.field_version();
+    statistics_.field = field_statistics(*renderer_->field());
+    return {};
+  }
+
   // A graded plate tells no radiance: unless told, it counts as exposed for the first light that has power.
   bool meter_plate() {
     if (plate_white_cd_m2_ || !plates_->plate().display_referred) return false;
-    const float white = white_floor_cd_m2(source_.lights());
+    const float white =
+        source_.field() != nullptr
+            ? white_floor_cd_m2(*source_.field(), renderer_->object_bounds().centre.cast<double>())
+            : white_floor_cd_m2(source_.lights());
     if (!(white > 0)) return false;
     plate_white_cd_m2_ = white;
     say(plate_white_text(options_.plate, white));
@@ -250,6 +267,8 @@ class Session {
       renderer_->set_environment(source_.environment());
       shown_environment_ = source_.environment_version();
     }
+    if (source_.field_version() != shown_field_)
+      if (Status s = show_field(); !s) return s;
     Statistics::Frame times;
     const auto start = Clock::now();
     const double cpu_start = cpu_ms();
@@ -273,7 +292,8 @@ class Session {
     times.cpu_ms = cpu_ms() - cpu_start;
     times.passes = renderer_->pass_times();
     if (!options_.stats.empty()) statistics_.frames.push_back(times);
-    statistics_.lights = lights.lights.size();
+    statistics_.lights = renderer_->field() != nullptr ? renderer_->field()->main_lights().lights.size()
+                                                       : lights.lights.size();
     statistics_.predicted_error = lights.lights.empty() ? 0 : lights.lights.back().predicted_error;
     statistics_.shadow_maps = renderer_->shadow_maps();
     if (options_.target_fps) statistics_.chosen = {budget_.texels(), budget_.expected_error()};
@@ -379,6 +399,7 @@ class Session {
   double last_ms_ = 0;
   int frame_ = 0;
   int shown_environment_ = 0;
+  int shown_field_ = 0;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_frame_ = Clock::now();
 };

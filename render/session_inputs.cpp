@@ -3,6 +3,8 @@
 #include "render/session_inputs.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <limits>
 
 #include "interface/light_set_io.h"
 #include "render/camera.h"
@@ -34,6 +36,37 @@ Result<ChosenCamera> choose_camera(const Scene& scene, const Options& options) {
   return ChosenCamera{fitted_camera(scene), std::nullopt};
 }
 
+namespace {
+
+struct Bounds {
+  Vec3f low = Vec3f::Constant(std::numeric_limits<float>::max());
+  Vec3f high = -low;
+};
+
+Bounds bounds_of(const Scene& scene) {
+  Bounds bounds;
+  for (const std::uint32_t i : scene.indices) {
+    bounds.low = bounds.low.cwiseMin(scene.vertices[i].position);
+    bounds.high = bounds.high.cwiseMax(scene.vertices[i].position);
+  }
+  return bounds;
+}
+
+std::string text_of(const Vec3d& low, const Vec3d& high) {
+  char text[160];
+  std::snprintf(text, sizeof text, "(%.3g, %.3g, %.3g) to (%.3g, %.3g, %.3g)", low.x(), low.y(), low.z(),
+                high.x(), high.y(), high.z());
+  return text;
+}
+
+}  // namespace
+
+float white_floor_cd_m2(const LightField& field, const Vec3d& place) {
+  const Vec3d inside = place.cwiseMax(field.grid.low).cwiseMin(field.grid.high);
+  const Rgbd lux = irradiance(light_at(field, inside), Vec3d::UnitY());
+  return static_cast<float>(std::max(0.0, luminance(lux)) / kPi);
+}
+
 float white_floor_cd_m2(const LightSet& lights) {
   double sum = luminance(lights.ambient);
   for (const DirectionalLight& light : lights.lights)
@@ -52,6 +85,14 @@ std::vector<std::string> remarks_on(const Scene& scene, const ChosenCamera& came
   for (const std::string& remark : scene.remarks) remarks.push_back(file + ": " + remark);
   if (!camera.of_scene)
     remarks.push_back(file + " has no perspective camera; one that sees all of it is used");
+  if (const LightField* field = source.field(); field != nullptr && !scene.indices.empty()) {
+    const Bounds bounds = bounds_of(scene);
+    const Vec3d low = bounds.low.cast<double>(), high = bounds.high.cast<double>();
+    if (!field->grid.contains(low) || !field->grid.contains(high))
+      remarks.push_back(options.field.string() + " reaches over " +
+                        text_of(field->grid.low, field->grid.high) + " m, the scene over " +
+                        text_of(low, high) + ": beyond the field the light at its border is taken");
+  }
   const LightSet& set = source.lights();
   if (!options.light_set.empty() && std::none_of(set.lights.begin(), set.lights.end(), has_power))
     remarks.push_back(
@@ -70,6 +111,7 @@ Result<std::unique_ptr<LightSource>> open_lights(const Options& options) {
     live.with_environment = options.background_environment || options.probe;
     return live_lights(live);
   }
+  if (!options.field.empty()) return field_light(options.field);
   if (!options.environment.empty())
     return environment_lights({options.environment, options.lights, options.method, options.coverage,
                                options.spin_deg, options.shadow_maps});

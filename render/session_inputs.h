@@ -28,6 +28,8 @@ Result<std::unique_ptr<LightSource>> open_lights(const Options& options);
 // Luminance of a horizontal Lambertian surface of albedo 1 under the lights: what a camera shows as white that is
 // exposed by an incident light meter.
 float white_floor_cd_m2(const LightSet& lights);
+// The same at a place of a field, or the nearest to it in the field.
+float white_floor_cd_m2(const LightField& field, const Vec3d& place);
 
 // What of the scene and its light is shown otherwise than one may expect, a line each.
 std::vector<std::string> remarks_on(const Scene& scene, const ChosenCamera& camera, const LightSource& source,

@@ -49,7 +49,19 @@ std::string Statistics::json() const {
     report["chosen"] = {{"lights", lights},
                         {"shadow_texels", chosen->shadow_texels},
                         {"expected_error", chosen->expected_error}};
+  if (field)
+    report["field"] = {{"size", field->size},
+                       {"degree", field->degree},
+                       {"main_lights", field->main_lights},
+                       {"texture_units", field->texture_units},
+                       {"bytes", field->bytes}};
   return report.dump(2) + "\n";
+}
+
+Statistics::Field field_statistics(const FieldShading& field) {
+  const FieldLayout& layout = field.layout();
+  return {layout.grid().size, layout.degree(), field.main_lights().lights.size(), field.texture_units(),
+          layout.bytes()};
 }
 
 }  // namespace lightwell::render

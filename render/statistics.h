@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -31,10 +32,21 @@ struct Statistics {
     double expected_error = 0;  // relative RMSE of the picture
   };
   std::optional<Chosen> chosen;
+  // Of a light field.
+  struct Field {
+    std::array<int, 3> size{};
+    int degree = 0;
+    std::size_t main_lights = 0;
+    int texture_units = 0;  // that its shading binds
+    std::size_t bytes = 0;  // of its textures
+  };
+  std::optional<Field> field;
   std::string gl_renderer;
 
   // Passes are medians. A run without frames reports nulls.
   [[nodiscard]] std::string json() const;
 };
+
+Statistics::Field field_statistics(const FieldShading& field);
 
 }  // namespace lightwell::render

@@ -8,38 +8,11 @@
 
 #include "render/light_subsets.h"
 #include "render/shaders.h"
+#include "render/shading_facts.h"
 #include "render/uniforms.h"
 
 namespace lightwell::render {
 namespace {
-
-// Only the models that the scene's materials use are compiled.
-std::string shading_models(const Scene& scene) {
-  const auto uses = [&](Material::Model model) {
-    return std::any_of(scene.materials.begin(), scene.materials.end(),
-                       [=](const Material& m) { return m.model == model; });
-  };
-  return std::string("#define HAS_PHONG ") + (uses(Material::Model::phong) ? "1" : "0") +
-         "\n#define HAS_METALLIC_ROUGHNESS " + (uses(Material::Model::metallic_roughness) ? "1" : "0") + "\n";
-}
-
-std::string emission_fact(const Scene& scene) {
-  const bool emits = std::any_of(scene.primitives.begin(), scene.primitives.end(), [&](const Primitive& p) {
-    return (scene.materials[static_cast<std::size_t>(p.material)].emission > 0).any();
-  });
-  return std::string("#define HAS_EMISSION ") + (emits ? "1" : "0") + "\n";
-}
-
-// The look-up of shadows, and what it is to know.
-std::string look_up(bool nothing_casts, const ShadingOptions& options) {
-  constexpr float kCurvatureTexels = 0.1f;
-  if (nothing_casts) return "#define HAS_SHADOWS 0\n";
-  // Depth: two steps of 16 bits. Cosine: below it the plane's slope is cut, where little light falls anyway.
-  return "#define HAS_SHADOWS 1\n#define CASTER_SLACK " +
-         std::to_string(kCurvatureTexels + (options.simplified_casters ? kSimplifiedTexels : 0)) +
-         "\n#define DEPTH_SLACK 0.00003\n#define LEAST_COSINE 0.05\n#define SOFT_EDGES " +
-         (options.soft_edges ? "1\n" : "0\n") + std::string(shader_text("shadow.glsl"));
-}
 
 constexpr const char* kPasses = "#define WHOLE 0\n#define SUBSETS 1\n#define FILTERED 2\n";
 
@@ -66,7 +39,7 @@ Status add(gl::Program& made, const std::string& defines) {
 Result<SurfaceShading::Programs> SurfaceShading::make_programs(bool shadows, bool lists) const {
   Programs made;
   const std::string facts = kPasses + models_ + (shadows ? look_up_ : no_look_up_) + "#define LIGHT_LISTS " +
-                            (lists ? "1\n" + LightLists::facts() : "0\n");
+                            (lists ? "1\n" + LightLists::facts() : "0\n") + surface_code();
   if (Status s = add(made.whole, facts + "#define LIGHT_PASS WHOLE\n"); !s) return s.error();
   if (interleave_ == 1) return made;
   const std::string filter = filter_facts(interleave_) + std::string(shader_text("interleave.glsl"));
@@ -79,9 +52,9 @@ Result<SurfaceShading> SurfaceShading::create(const Scene& scene, bool nothing_c
                                               const ShadingOptions& options) {
   SurfaceShading shading;
   shading.interleave_ = options.interleave;
-  shading.models_ = shading_models(scene) + emission_fact(scene);
-  shading.look_up_ = look_up(nothing_casts, options);
-  shading.no_look_up_ = look_up(true, options);
+  shading.models_ = material_kinds(scene).facts();
+  shading.look_up_ = shadow_look_up(nothing_casts, options.shadows);
+  shading.no_look_up_ = shadow_look_up(true, options.shadows);
   if (Status s = shading.make_if_missing(true, false); !s) return s.error();
   shading.light_block_ =
       gl::make_buffer(GL_UNIFORM_BUFFER, nullptr, kMaxLightsPerBlock * sizeof(LightRow), GL_DYNAMIC_DRAW);
@@ -142,7 +115,7 @@ void SurfaceShading::set_lights(std::span<const LightRow> lights, std::span<cons
 void SurfaceShading::shade(bool shadows, const Sample& sample, const Target& target, const GBuffer& gbuffer,
                            const ShadowAtlas& atlas, const Casters& casters) const {
   const Programs& programs = programs_[shadows ? 1 : 0][lists_ ? 1 : 0];
-  glViewport(0, 0, width_, height_);
+  glViewport(0, 0, target.width, target.height);
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);
   glDepthFunc(GL_GREATER);  // the draw is at depth 1, where nothing is

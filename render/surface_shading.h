@@ -11,14 +11,13 @@
 #include "render/gbuffer.h"
 #include "render/light_lists.h"
 #include "render/light_rows.h"
+#include "render/shading_facts.h"
 #include "render/shadow_atlas.h"
 
 namespace lightwell::render {
 
 struct ShadingOptions {
-  bool simplified_casters = true;  // in the shadow maps
-  // Edges of shadows as wide as their lights make them; else as sharp as the maps are.
-  bool soft_edges = true;
+  ShadowLookUp shadows;
   int interleave =
       1;  // pixels a side of the square over which weak lights are spread (light_subsets.h); 1: each takes all
 };
@@ -42,12 +41,14 @@ class SurfaceShading {
     GLuint framebuffer;  // with the G-buffer's depth
     GLuint so_far;       // the sum of earlier blocks and samples
     bool start_sum;      // so_far is not there yet
+    int width, height;
   };
   // Of one sample of the picture.
   struct Sample {
     const View& view;
     Rgb ambient;
     bool first_block;  // ambient light and emission are drawn with it
+    bool last_block;
     float weight;
   };
   void shade(bool shadows, const Sample& sample, const Target& target, const GBuffer& gbuffer,

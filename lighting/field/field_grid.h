@@ -34,6 +34,7 @@ struct FieldGrid {
   [[nodiscard]] bool contains(const Vec3d& world) const {
     return (world.array() >= low.array()).all() && (world.array() <= high.array()).all();
   }
+  bool operator==(const FieldGrid&) const = default;
   [[nodiscard]] int longest_side() const { return *std::max_element(size.begin(), size.end()); }
 };
 

@@ -2,29 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lighting/field/harmonic_rotation.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "lighting/direction.h"
+#include "lighting/field/gauss_legendre.h"
 #include "lighting/result.h"
 
 namespace lightwell {
-namespace {
-
-struct GaussLegendre {
-  Eigen::VectorXd nodes, weights;
-};
-
-// source: Golub and Welsch 1969, "Calculation of Gauss quadrature rules"
-GaussLegendre gauss_legendre(int count) {
-  Eigen::MatrixXd jacobi = Eigen::MatrixXd::Zero(count, count);
-  for (int i = 1; i < count; ++i) jacobi(i, i - 1) = jacobi(i - 1, i) = i / std::sqrt(4.0 * i * i - 1);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(jacobi);
-  return {solver.eigenvalues(), 2 * solver.eigenvectors().row(0).transpose().cwiseAbs2()};
-}
-
-}  // namespace
-
 HarmonicRotation::HarmonicRotation(const Eigen::Matrix3d& rotation, int degree) {
   verify_bug(degree >= 0 && degree <= kMostDegree, "degree of spherical harmonics out of range");
   for (int l = 0; l <= degree; ++l) bands_.emplace_back(Eigen::MatrixXd::Zero(2 * l + 1, 2 * l + 1));

@@ -9,10 +9,6 @@ struct Light { vec4 to_light_extent, illuminance_texel, tile_spread, fit; };  //
 layout(std140) uniform Lights { Light lights[256]; };
 uniform int light_count;
 uniform vec3 objects_centre, scene_centre;  // of the spheres that maps fit, without supports in the way and with
-uniform sampler2D position_material_map;
-uniform usampler2D surface_map;
-uniform sampler2D materials;
-uniform vec3 eye;
 #if LIGHT_PASS == SUBSETS
 out uvec4 subset;
 #else
@@ -26,42 +22,6 @@ uniform sampler2D emission_map;
 #endif
 out vec4 radiance;
 #endif
-
-const float kPi = 3.14159265358979;
-
-struct Surface {
-  vec3 normal, to_eye, mirrored;
-  bool phong;
-  vec3 diffuse, specular;  // specular: of the lobe (Phong) or at normal incidence (metallic–roughness)
-  float exponent, alpha2;
-};
-
-vec3 from_octahedral(vec2 p) {
-  vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
-  if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
-  return normalize(n);
-}
-
-Surface unpack(vec4 position_material, uvec4 packed_surface) {
-  int texel = (int(position_material.w) - 1) * 2;
-  vec4 a = texelFetch(materials, ivec2(texel % 1024, texel / 1024), 0);
-  vec4 b = texelFetch(materials, ivec2((texel + 1) % 1024, (texel + 1) / 1024), 0);
-  vec2 blue_rough = unpackHalf2x16(packed_surface.z);
-  vec3 base = a.rgb * vec3(unpackHalf2x16(packed_surface.y), blue_rough.x);
-  Surface s;
-  s.normal = from_octahedral(unpackSnorm2x16(packed_surface.x));
-  s.to_eye = normalize(eye - position_material.xyz);
-  s.mirrored = reflect(-s.to_eye, s.normal);
-  s.phong = a.w > 0.5;
-  float metallic = b.x * float(packed_surface.w >> 2 & 255u) / 255.0;
-  float rough = b.y * blue_rough.y;
-  s.diffuse = s.phong ? base : base * (1.0 - metallic);
-  s.specular = s.phong ? b.rgb : mix(vec3(0.04), base, metallic);
-  s.exponent = b.w;
-  // A mirror has no lobe that directional lights could fill: α stays above 0.001.
-  s.alpha2 = max(rough * rough * rough * rough, 1e-6);
-  return s;
-}
 
 // glTF 2.0, appendix B.3: Trowbridge–Reitz distribution, Smith masking, Schlick's Fresnel term.
 // spread: tangent of the light's angular radius, which widens the lobe
@@ -105,7 +65,7 @@ void main() {
   vec4 position_material = texelFetch(position_material_map, at, 0);
   uvec4 packed_surface = texelFetch(surface_map, at, 0);
   Surface s = unpack(position_material, packed_surface);
-  vec3 plane = from_octahedral(vec2(packed_surface.w >> 10 & 2047u, packed_surface.w >> 21) * (2.0 / 2047.0) - 1.0);
+  vec3 plane = plane_of(packed_surface);
 #if HAS_SHADOWS
   uint in_shadow_maps = packed_surface.w & 3u;
   Maps maps = Maps(position_material.xyz - objects_centre, position_material.xyz - scene_centre,
