@@ -8,17 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "lighting/luminaire/lamp_rays.h"
 #include "lighting/result.h"
-#include "lighting/vector.h"
 
 namespace lightwell {
-
-// A ray of a lamp, in its frame (docs/conventions.md): where it starts, where it goes, and its part of the flux.
-struct LampRay {
-  Vec3d origin_m = Vec3d::Zero();
-  Vec3d direction = -Vec3d::UnitZ();  // unit
-  double flux_lm = 0;
-};
 
 struct RayFile {
   std::vector<LampRay> rays;

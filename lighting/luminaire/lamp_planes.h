@@ -14,17 +14,25 @@ namespace lightwell {
 // source: Keys 1981, a = −½
 std::array<double, 4> cubic_weights(double x) noexcept;
 
-// The two planes between which a lamp's light is described, in its frame: it shines toward −Z, the sampling plane is
-// z = 0 just before it, the measurement plane z = −distance_m. A ray meets them in (u, v) and (s, t), both (x, y).
+// What the pixels of a lamp's images stand for.
+enum class LampMap {
+  plane,  // points (s, t) of the measurement plane, distance_m below the sampling plane
+  hemisphere,  // directions below the sampling plane: the disc of equal areas as a square, −1 to 1 (Shirley, Chiu 1997)
+};
+
+// How a lamp's light is described, in its frame: it shines toward −Z, the sampling plane lies across just before it. A ray
+// meets it in (u, v), and the measurement plane in (s, t), both (x, y).
 struct LampPlanes {
   // Positions on the sampling plane: a square grid.
   std::array<int, 2> positions = {1, 1};  // along u, v
   double spacing_m = 0.01;
   Vec2d first_m = Vec2d::Zero();  // (u, v) of the first
-  // Pixels on the measurement plane, each even over its area; column along s, row along t.
-  double distance_m = 0.1;
+  double z_m = 0;                 // of the sampling plane
+  LampMap map = LampMap::plane;
+  // Pixels of the map, each even over its area; column along s, row along t.
+  double distance_m = 0.1;  // of the measurement plane
   std::array<int, 2> pixels = {1, 1};
-  Vec2d low_m = Vec2d::Constant(-0.1), high_m = Vec2d::Constant(0.1);  // outer edges
+  Vec2d low_m = Vec2d::Constant(-0.1), high_m = Vec2d::Constant(0.1);  // outer edges; ±1 of a hemisphere
 
   [[nodiscard]] std::size_t images() const {
     return static_cast<std::size_t>(positions[0]) * static_cast<std::size_t>(positions[1]);
@@ -36,11 +44,20 @@ struct LampPlanes {
     return static_cast<std::size_t>(v) * static_cast<std::size_t>(positions[0]) + static_cast<std::size_t>(u);
   }
   [[nodiscard]] Vec2d position(int u, int v) const { return first_m + spacing_m * Vec2d(u, v); }
+  [[nodiscard]] Vec3d place(const Vec2d& sampling) const { return {sampling.x(), sampling.y(), z_m}; }
   [[nodiscard]] Vec2d pixel_m() const { return (high_m - low_m).cwiseQuotient(Vec2d(pixels[0], pixels[1])); }
   [[nodiscard]] Vec2d pixel_centre(int s, int t) const {
     return low_m + pixel_m().cwiseProduct(Vec2d(s + 0.5, t + 0.5));
   }
+  // Where on the map a ray from (u, v) lies; way: to any point of it below the sampling plane.
+  [[nodiscard]] Vec2d on_map(const Vec2d& sampling, const Vec3d& way) const;
+  // Of a pixel, as seen from (u, v) of the sampling plane.
+  [[nodiscard]] double pixel_solid_angle_sr(const Vec2d& sampling, int s, int t) const;
 };
+
+// Directions below the sampling plane (unit, z ≤ 0) to the square of −1 to 1, equal areas to equal solid angles.
+Vec2d square_from_direction(const Vec3d& direction);
+Vec3d direction_from_square(const Vec2d& place);
 
 // Images of a lamp: [v][u][t][s].
 struct LampImages {

@@ -52,8 +52,8 @@ Rgbd radiance(const MeasuredLamp& lamp, LampForm form, const Vec2d& sampling, co
 }
 
 Rgbd illuminance(const MeasuredLamp& lamp, LampForm form, const Vec3d& point, const Vec3d& normal) {
-  if (!(point.z() < 0)) return Rgbd::Zero();
   const LampPlanes& planes = lamp.irradiance.planes;
+  if (!(point.z() < planes.z_m)) return Rgbd::Zero();
   // The bells' pieces are half a spacing wide; the span ends one spacing beyond the outer positions.
   const double piece = planes.spacing_m / 2, offset = piece / 2 / std::sqrt(3.0);
   Rgbd sum = Rgbd::Zero();
@@ -64,7 +64,7 @@ Rgbd illuminance(const MeasuredLamp& lamp, LampForm form, const Vec3d& point, co
         return (k / 2 + 0.5) * piece - planes.spacing_m + (k % 2 == 0 ? -offset : offset);
       };
       const Vec2d sampling = planes.first_m + Vec2d(along(i), along(j));
-      const Vec3d way = point - Vec3d(sampling.x(), sampling.y(), 0);
+      const Vec3d way = point - planes.place(sampling);
       const double square = way.squaredNorm(), facing = -way.dot(normal);
       if (!(facing > 0)) continue;
       const Vec2d measurement = sampling + way.head<2>() * (planes.distance_m / -way.z());

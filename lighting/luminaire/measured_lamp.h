@@ -25,7 +25,7 @@ enum class LampForm {
 };
 Rgbd radiance(const MeasuredLamp& lamp, LampForm form, const Vec2d& sampling, const Vec2d& measurement);
 
-// Of a surface at a point below the sampling plane (z < 0, else 0); normal: unit. Lux. The integral of equation 12 over the
+// Of a surface at a point below the sampling plane (else 0); normal: unit. Lux. The integral of equation 12 over the
 // sampling plane, two Gauss–Legendre points a piece of the bells each way: as exact as the form.
 Rgbd illuminance(const MeasuredLamp& lamp, LampForm form, const Vec3d& point, const Vec3d& normal);
 

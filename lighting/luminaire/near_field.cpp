@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "lighting/result.h"
+
 namespace lightwell {
 namespace {
 
@@ -50,9 +52,10 @@ LampImages deconvolve(const LampImages& in, int axis, const std::array<double, 3
   return out;
 }
 
-// What makes the intensity of a square of sampling plane from L cos² / R², which is what is alike at neighbours:
-// I = L cos · square = (L cos² / R²) R³ / d · square.
+// What makes the intensity of a square of sampling plane from what is alike at neighbours: of planes L cos² / R², so that
+// I = L cos · square = (L cos² / R²) R³ / d · square; of hemispheres L cos itself.
 double intensity_factor(const LampPlanes& planes, const Vec2d& sampling, const Vec2d& measurement) {
+  if (planes.map == LampMap::hemisphere) return planes.spacing_m * planes.spacing_m;
   const double d = planes.distance_m;
   const double square = d * d + (measurement - sampling).squaredNorm();
   return planes.spacing_m * planes.spacing_m * square * std::sqrt(square) / d;
@@ -78,6 +81,7 @@ Rgbd intensity_between(const NearField& lamp, const Vec2d& place, const Vec2d& m
 }  // namespace
 
 NearField point_sources(const MeasuredLamp& lamp) {
+  verify_bug(lamp.irradiance.planes.map == LampMap::plane, "a rig measures on a plane");
   const std::array<double, 3> taps = deconvolution(lamp.filter);
   LampImages images = deconvolve(deconvolve(lamp.irradiance, 0, taps), 1, taps);
   const LampPlanes& planes = images.planes;
@@ -99,8 +103,8 @@ int subdivision_at(const NearField& lamp, double distance_m) {
 }
 
 Rgbd illuminance(const NearField& lamp, const Vec3d& point, const Vec3d& normal, int subdivision) {
-  if (!(point.z() < 0)) return Rgbd::Zero();
   const LampPlanes& planes = lamp.intensity.planes;
+  if (!(point.z() < planes.z_m)) return Rgbd::Zero();
   // Between the last position and where the next would be light fades to nothing.
   const int margin = subdivision - 1;
   Rgbd sum = Rgbd::Zero();
@@ -108,29 +112,25 @@ Rgbd illuminance(const NearField& lamp, const Vec3d& point, const Vec3d& normal,
     for (int i = -margin; i <= (planes.positions[0] - 1) * subdivision + margin; ++i) {
       const Vec2d place = Vec2d(i, j) / subdivision;
       const Vec2d from = planes.first_m + planes.spacing_m * place;
-      const Vec3d way = point - Vec3d(from.x(), from.y(), 0);
+      const Vec3d way = point - planes.place(from);
       const double facing = -way.dot(normal);
       if (!(facing > 0)) continue;
       const double square = way.squaredNorm();
-      const Vec2d measurement = from + way.head<2>() * (planes.distance_m / -way.z());
-      sum += intensity_between(lamp, place, measurement) * (facing / (square * std::sqrt(square)));
+      sum +=
+          intensity_between(lamp, place, planes.on_map(from, way)) * (facing / (square * std::sqrt(square)));
     }
   return (sum / (subdivision * subdivision)).max(0.0);
 }
 
 Rgbd luminous_flux(const NearField& lamp) {
   const LampPlanes& planes = lamp.intensity.planes;
-  const double area = planes.pixel_m().prod();
   Rgbd sum = Rgbd::Zero();
   for (int v = 0; v < planes.positions[1]; ++v)
     for (int u = 0; u < planes.positions[0]; ++u) {
       const Rgb* pixel = lamp.intensity.image(u, v);
       for (int t = 0; t < planes.pixels[1]; ++t)
-        for (int s = 0; s < planes.pixels[0]; ++s, ++pixel) {
-          const double square = planes.distance_m * planes.distance_m +
-                                (planes.pixel_centre(s, t) - planes.position(u, v)).squaredNorm();
-          sum += pixel->cast<double>() * (area * planes.distance_m / (square * std::sqrt(square)));
-        }
+        for (int s = 0; s < planes.pixels[0]; ++s, ++pixel)
+          sum += pixel->cast<double>() * planes.pixel_solid_angle_sr(planes.position(u, v), s, t);
     }
   return sum;
 }

@@ -20,13 +20,13 @@ NearField point_sources(const MeasuredLamp& lamp);
 // quarter of its distance, up to 16.
 int subdivision_at(const NearField& lamp, double distance_m);
 
-// Of a surface at a point below the sampling plane (z < 0, else 0); normal: unit. Lux, 0 or more. Where sources are
+// Of a surface at a point below the sampling plane (else 0); normal: unit. Lux, 0 or more. Where sources are
 // subdivided, the light toward a fixed point of the measurement plane is interpolated between positions (cubic
 // convolution): neighbours see that point alike.
 Rgbd illuminance(const NearField& lamp, const Vec3d& point, const Vec3d& normal, int subdivision);
 inline Rgbd illuminance(const NearField& lamp, const Vec3d& point, const Vec3d& normal) {
-  return point.z() < 0 ? illuminance(lamp, point, normal, subdivision_at(lamp, -point.z()))
-                       : Rgbd(Rgbd::Zero());
+  const double below = lamp.intensity.planes.z_m - point.z();
+  return below > 0 ? illuminance(lamp, point, normal, subdivision_at(lamp, below)) : Rgbd(Rgbd::Zero());
 }
 
 // Through the images, lm.
