@@ -17,6 +17,7 @@
 #include "cli/command.h"
 #include "cli/field_grid_option.h"
 #include "cli/field_pictures.h"
+#include "cli/field_rays.h"
 #include "cli/field_walk.h"
 #include "cli/progress.h"
 #include "cli/stop_notice.h"
@@ -128,6 +129,7 @@ void report(const BuildArguments& o, const Prepared& prepared, const FieldBuild&
   if (build.support > 0) {
     json["support"] = build.support;
     json["held_out_error"] = build.held_out_error;
+    json.update(rays_json(prepared.take, build));
   }
   if (prepared.walk) json["walk"] = walk_json(*prepared.walk, o.walk);
   std::printf("%s\n", json.dump(2).c_str());
@@ -209,6 +211,8 @@ Result<FieldBuild> build(const Prepared& prepared, FieldRanks& ranks) {
   const bool said = *prepared.repaired;
   if (ranks.any(said) && speaks && !said)
     options.remark("values of pictures that are negative, NaN or infinite; read as 0");
+  if (built && speaks)
+    for (const std::string& remark : remarks_on_rays(prepared.take, *built)) options.remark(remark);
   if (built && speaks && is_dark(built->field)) options.remark("no probe has any light: the field is dark");
   return built;
 }

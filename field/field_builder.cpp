@@ -19,6 +19,8 @@ namespace {
 
 constexpr std::size_t kHeldOutBuckets = 24;  // spread over the sphere
 constexpr std::size_t kHeldOutOfABucket = 4;
+constexpr std::size_t kCheckedRays = 400'000;                  // a few seconds' fits
+constexpr std::size_t kFewestChecked = 24, kMostChecked = 96;  // directions
 
 // What stands between pictures and sums: one for the length of a build, on every rank.
 class Builder {
@@ -69,6 +71,11 @@ class Builder {
     }
     build.support = static_cast<int>(done.support);
     build.held_out_error = done.held_out_error;
+    if (options_.method == FieldMethod::best) {
+      Status checked;
+      if (rank() == 0) checked = check_rays(build);
+      if (checked = ranks_.agree(checked); !checked) return checked;
+    }
 
     FieldSums part(options_.grid, options_.degree);
     std::vector<DirectionEstimator> estimators(
@@ -198,6 +205,24 @@ class Builder {
     }
     chosen.support = choice.best();
     chosen.held_out_error = choice.held_out_error();
+    return {};
+  }
+
+  // Whether all probes saw one field: every probe in directions spread over the sphere, fewer the more probes there are.
+  Status check_rays(FieldBuild& build) {
+    RayConsistency consistency(probes());
+    DirectionEstimator estimator(options_.grid, take_.positions, options_.method, build.support);
+    const std::size_t wanted = std::clamp(kCheckedRays / probes(), kFewestChecked, kMostChecked);
+    const std::size_t together = std::min<std::size_t>(kHeldOutOfABucket, wanted);
+    const std::size_t step = std::max<std::size_t>(1, store_.buckets() * together / wanted);
+    for (std::size_t b = step / 2; b < store_.buckets(); b += step) {
+      if (const Status loaded = load(b); !loaded) return loaded;
+      const std::size_t within = std::max<std::size_t>(1, width() / together);
+      for (std::size_t d = 0; d < width(); d += within)
+        estimator.check(bins_.directions()[first_ + d], radiance_of(d), consistency);
+    }
+    build.doubtful = consistency.doubtful();
+    build.close_difference = consistency.close_difference();
     return {};
   }
 

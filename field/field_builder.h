@@ -48,6 +48,9 @@ struct FieldBuild {
   double coverage = 0;        // part of the sphere that a probe sees
   int support = 0;            // rays of a fit, of best
   double held_out_error = 0;  // SupportChoice::held_out_error, of best
+  // Of best, on rank 0: RayConsistency.
+  std::vector<DoubtfulProbe> doubtful;
+  double close_difference = 0;
 };
 
 // done of total: pictures first, then directions; called from one thread at a time, of rank 0.

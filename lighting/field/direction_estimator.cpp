@@ -64,4 +64,12 @@ void DirectionEstimator::hold_out(const MeasuredDirection& direction, std::span<
   choice.add(nearest_);
 }
 
+void DirectionEstimator::check(const MeasuredDirection& direction, std::span<const Rgb> radiance,
+                               RayConsistency& consistency) {
+  (void)project(direction, radiance);
+  if (samples_.empty()) return;
+  nearest_.build(samples_);
+  consistency.add(nearest_, radiance, support_);
+}
+
 }  // namespace lightwell

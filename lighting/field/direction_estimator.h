@@ -9,6 +9,7 @@
 #include "lighting/field/field_sums.h"
 #include "lighting/field/moving_least_squares.h"
 #include "lighting/field/nearest_samples.h"
+#include "lighting/field/ray_consistency.h"
 #include "lighting/field/support_choice.h"
 
 namespace lightwell {
@@ -29,6 +30,8 @@ class DirectionEstimator {
   void estimate(const MeasuredDirection& direction, std::span<const Rgb> radiance, FieldDirection& out);
   // The same rays, foretold from each other.
   void hold_out(const MeasuredDirection& direction, std::span<const Rgb> radiance, SupportChoice& choice);
+  // Whether they are what the others foretell, over the support of this estimator.
+  void check(const MeasuredDirection& direction, std::span<const Rgb> radiance, RayConsistency& consistency);
 
  private:
   ShearPlane project(const MeasuredDirection& direction, std::span<const Rgb> radiance);
