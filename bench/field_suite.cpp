@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 
+#include "bench/field_live.h"
 #include "bench/field_stage.h"
 #include "bench/splat_in_space.h"
 #include "bench/suite.h"
@@ -167,6 +168,7 @@ std::vector<Row> field_suite(const Options& options) {
   std::vector<Row> rows = error_rows_of_fields();
   for (Row& row : direction_rows(options)) rows.push_back(std::move(row));
   for (Row& row : stage_rows()) rows.push_back(std::move(row));
+  for (Row& row : live_rows(options)) rows.push_back(std::move(row));
   for (const std::size_t probes : {250u, 500u, 1000u, 2000u})
     rows.push_back(build_row("growth with probes", probes, 24, LatLongProbe{}, 64, 32));
   for (const int side : {12, 16, 24, 32})

@@ -11,10 +11,11 @@ namespace {
 
 constexpr double kDegree = kPi / 180;
 constexpr double kFirstRadius = 2 * kDegree, kLastRadius = 30 * kDegree, kGrowth = 1.3;
-constexpr double kContrast = 6;        // of the peak over the surroundings
-constexpr double kStillFalling = 0.8;  // surroundings of a wider circle below this: the lamp goes on
-constexpr double kEdge = 0.05;         // of the peak over the surroundings: what belongs to the lamp
-constexpr double kLeastShare = 0.02;   // of the map's light
+constexpr double kContrast = 6;           // of the peak over the surroundings
+constexpr double kThinned = 4 * kDegree;  // a ring of this radius has more bins than its median needs
+constexpr double kStillFalling = 0.8;     // surroundings of a wider circle below this: the lamp goes on
+constexpr double kEdge = 0.05;            // of the peak over the surroundings: what belongs to the lamp
+constexpr double kLeastShare = 0.02;      // of the map's light
 constexpr float kTaken = -1;
 
 }  // namespace
@@ -30,7 +31,8 @@ LampFinder::LampFinder(const PolarCells& cells)
   peak_.resize(static_cast<std::size_t>(grid.rings));
 }
 
-// Bins whose centres lie between two angles from a direction, taken ones left out.
+// Bins whose centres lie between two angles from a direction, taken ones left out. Of a wide ring, whose median is all
+// that is asked, every n-th row and column are enough.
 void LampFinder::collect(const Vec3f& centre, double inner_rad, double outer_rad,
                          std::vector<std::uint32_t>& bins) const {
   bins.clear();
@@ -45,9 +47,10 @@ void LampFinder::collect(const Vec3f& centre, double inner_rad, double outer_rad
   const int half = std::min(grid.sectors / 2, static_cast<int>(span / (2 * kPi) * grid.sectors) + 1);
   const int middle = static_cast<int>(at.lambda_rad / (2 * kPi) * grid.sectors);
   const int count = std::min(2 * half + 1, grid.sectors);
+  const int step = 1 + static_cast<int>(inner_rad / kThinned);
   const auto least = static_cast<float>(std::cos(outer_rad)), most = static_cast<float>(std::cos(inner_rad));
-  for (int ring = first; ring <= last; ++ring)
-    for (int i = 0; i < count; ++i) {
+  for (int ring = first; ring <= last; ring += step)
+    for (int i = 0; i < count; i += step) {
       const int sector = (middle - half + i + 2 * grid.sectors) % grid.sectors;
       const auto bin = static_cast<std::uint32_t>(ring * grid.sectors + sector);
       const float cosine = directions_[bin].dot(centre);

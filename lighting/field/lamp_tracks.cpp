@@ -206,7 +206,10 @@ void LampTracks::update(std::span<const ProbeSightings> probes, double elapsed_s
     return std::find(lost.begin(), lost.end(), track.id) != lost.end();
   });
   find_new(probes);
-  share_out(probes);
+  // A new lamp may stand in one line with another.
+  for (LampTrack& track : tracks_) link(track, probes);
+  // Shares rest on intensities, which rest on the other probes' shares.
+  for (int round = 0; round < 3; ++round) share_out(probes);
   const bool any =
       std::any_of(probes.begin(), probes.end(), [](const ProbeSightings& p) { return p.present; });
   first_ = first_ && !any;

