@@ -3,6 +3,8 @@
 // Built with -mavx2 -mfma (lighting/CMakeLists.txt), run where the machine has them.
 #include "lighting/field/live_kernel/kernel.h"
 #if defined(__x86_64__) && defined(__AVX2__)
+#define LIGHTWELL_AVX2_KERNELS
+
 // The kernels' text stands behind their declarations.
 #include "lighting/field/live_kernel/kernels.inl"
 

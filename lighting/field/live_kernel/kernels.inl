@@ -1,11 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-// The kernels' one text, included by a file for each instruction set. In the vector extension that GCC and Clang share;
-// a machine whose registers are narrower takes several steps.
+// The kernels' one text, included by a file for each instruction set. In the vector extension that GCC and Clang share, as
+// wide as the machine's registers: of wider ones GCC makes loads and stores in memory, eight times slower.
 namespace lightwell::live_kernel {
 namespace {
 
-using Floats = float __attribute__((vector_size(4 * kLanes)));
+#if defined(LIGHTWELL_AVX2_KERNELS)
+constexpr int kWidth = 8;
+#else
+constexpr int kWidth = 4;
+#endif
+static_assert(kLanes % kWidth == 0);
+using Floats = float __attribute__((vector_size(4 * kWidth)));
 // The same at any address.
 struct Anywhere {
   Floats v;
@@ -19,7 +25,7 @@ inline __attribute__((always_inline)) void store(float* p, const Floats& v) {
 }
 
 void interpolate(const float* weights, int pixels, int rays, const float* values, float* out) {
-  for (int p = 0; p < pixels; p += kLanes) {
+  for (int p = 0; p < pixels; p += kWidth) {
     Floats sum = Floats{}, weight;
     for (int n = 0; n < rays; ++n) {
       load(weight, weights + n * pixels + p);
@@ -34,7 +40,7 @@ void look_up(const Run& run, float* out) {
   const float* lower = upper + run.width;
   int i = 0;
   if (run.stride == 1)
-    for (; i + kLanes <= run.count; i += kLanes) {
+    for (; i + kWidth <= run.count; i += kWidth) {
       Floats a, b, c, d;
       load(a, upper + i);
       load(b, upper + i + 1);
@@ -55,12 +61,12 @@ inline __attribute__((always_inline)) void project_rows(const float* radiance, i
   Floats low[kRows], high[kRows];
   for (int h = 0; h < kRows; ++h) {
     load(low[h], out + h * points);
-    load(high[h], out + h * points + kLanes);
+    load(high[h], out + h * points + kWidth);
   }
   for (int d = 0; d < directions; ++d) {
     Floats a, b;
     load(a, radiance + d * stride);
-    load(b, radiance + d * stride + kLanes);
+    load(b, radiance + d * stride + kWidth);
     for (int h = 0; h < kRows; ++h) {
       const float y = harmonics[d * count + h];
       low[h] += y * a;
@@ -69,7 +75,7 @@ inline __attribute__((always_inline)) void project_rows(const float* radiance, i
   }
   for (int h = 0; h < kRows; ++h) {
     store(out + h * points, low[h]);
-    store(out + h * points + kLanes, high[h]);
+    store(out + h * points + kWidth, high[h]);
   }
 }
 
@@ -88,7 +94,7 @@ void project(const float* radiance, int stride, int directions, const float* har
              float* out) {
   constexpr int kRows = 5;  // a degree of 4 has 25
   int p = 0;
-  for (; p + 2 * kLanes <= points; p += 2 * kLanes) {
+  for (; p + 2 * kWidth <= points; p += 2 * kWidth) {
     int h = 0;
     for (; h + kRows <= count; h += kRows)
       project_rows<kRows>(radiance + p, stride, directions, harmonics + h, count, points,
@@ -96,7 +102,7 @@ void project(const float* radiance, int stride, int directions, const float* har
     for (; h < count; ++h)
       project_rows<1>(radiance + p, stride, directions, harmonics + h, count, points, out + h * points + p);
   }
-  for (; p < points; p += kLanes)
+  for (; p < points; p += kWidth)
     for (int h = 0; h < count; ++h)
       project_one(radiance + p, stride, directions, harmonics + h, count, out + h * points + p);
 }
