@@ -14,7 +14,8 @@ constexpr int kBias = 126;       // of the exponent
 constexpr int kLargest = 129;    // exponent: code 255
 constexpr int kSmallest = -126;  // code 0
 
-// Steps of 2^(e − 8): the largest of the three lies between 64 and 127 of them.
+// Steps of 2^(e − 8): the largest of the three lies between 64 and 128 of them; what rounds to 128 stays at 127, which is
+// nearer to it than a neighbour would be with steps twice as wide.
 int steps(float value, int exponent) {
   return static_cast<int>(std::lround(std::ldexp(static_cast<double>(value), 8 - exponent)));
 }
@@ -26,9 +27,7 @@ Srgbe to_srgbe(const Rgb& value) noexcept {
   for (float& v : known) v = std::isnan(v) ? 0.0f : std::clamp(v, -0x1.fcp+127f, 0x1.fcp+127f);
   const float largest = known.abs().maxCoeff();
   if (!(largest > 0)) return {};
-  int exponent = std::clamp(std::ilogb(largest) + 2, kSmallest, kLargest);
-  if (steps(largest, exponent) > kSteps && exponent < kLargest)
-    ++exponent;  // it rounds up to the next power of two
+  const int exponent = std::clamp(std::ilogb(largest) + 2, kSmallest, kLargest);
   Srgbe code;
   for (Eigen::Index i = 0; i < 3; ++i)
     code.mantissa[static_cast<std::size_t>(i)] =

@@ -59,8 +59,8 @@ TEST(Srgbe, SpecialValuesNeitherOverflowNorBecomeNothing) {
   EXPECT_GT(through(Rgb(kInfinity, 0, 0))[0], 0x1.fp+127f);
   EXPECT_TRUE((through(Rgb::Constant(std::nanf(""))) == 0).all());
   EXPECT_EQ(through(Rgb(1, std::nanf(""), 0))[0], 1) << "the others stay";
-  // Just below a power of two: rounds up to it rather than past the last code.
-  EXPECT_EQ(through(Rgb(std::nextafter(8.0f, 0.0f), 0, 0))[0], 8);
+  // Just below a power of two: the last code, not the one past it.
+  EXPECT_EQ(through(Rgb(std::nextafter(8.0f, 0.0f), 0, 0))[0], 8 * 127 / 128.0f);
 }
 
 // What a decoder may meet that no encoder of ours writes.
