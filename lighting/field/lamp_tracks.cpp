@@ -49,9 +49,9 @@ double intensity_of(const ProbeSightings& probe, int sighting, const Vec3d& plac
 }
 
 // Certainty: the position's deviation over the distance to the nearest probe that sees the lamp.
-double relative_sigma(const LampPlace& place, std::span<const LampRay> rays) {
+double relative_sigma(const LampPlace& place, std::span<const SightRay> rays) {
   double nearest_m = std::numeric_limits<double>::max();
-  for (const LampRay& ray : rays) nearest_m = std::min(nearest_m, (place.position - ray.origin).norm());
+  for (const SightRay& ray : rays) nearest_m = std::min(nearest_m, (place.position - ray.origin).norm());
   return place.sigma_m / nearest_m;
 }
 
@@ -68,7 +68,7 @@ void LampTracks::link(LampTrack& track, std::span<const ProbeSightings> probes) 
 
 // Moves a lamp to where its rays say. False where it is to be given up.
 bool LampTracks::follow(LampTrack& track, std::span<const ProbeSightings> probes, double elapsed_s) {
-  std::vector<LampRay> rays;
+  std::vector<SightRay> rays;
   for (std::size_t n = 0; n < probes.size(); ++n) {
     const int sighting = track.links[n].sighting;
     if (sighting < 0) continue;
@@ -108,8 +108,8 @@ void LampTracks::find_new(std::span<const ProbeSightings> probes) {
     }
   }
   const auto ray_of = [&](const Free& f) {
-    return LampRay{probes[f.probe].position,
-                   probes[f.probe].lamps[static_cast<std::size_t>(f.sighting)].direction};
+    return SightRay{probes[f.probe].position,
+                    probes[f.probe].lamps[static_cast<std::size_t>(f.sighting)].direction};
   };
   for (;;) {
     LampTrack best;
@@ -119,7 +119,7 @@ void LampTracks::find_new(std::span<const ProbeSightings> probes) {
         if (free[a].probe == free[b].probe) continue;
         const auto guess = meeting_point(ray_of(free[a]), ray_of(free[b]), 2 * kLeastDistance_m);
         if (!guess) continue;
-        std::vector<LampRay> rays;
+        std::vector<SightRay> rays;
         double denied = 0, least = std::numeric_limits<double>::max(), most = 0;
         std::vector<LampTrack::Link> links(probes.size());
         for (std::size_t n = 0; n < probes.size(); ++n) {

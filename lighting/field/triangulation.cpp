@@ -16,7 +16,7 @@ constexpr int kSteps = 4;  // the angles are nearly linear: two are enough but f
 
 }  // namespace
 
-std::optional<Vec3d> meeting_point(const LampRay& a, const LampRay& b, double least_m) {
+std::optional<Vec3d> meeting_point(const SightRay& a, const SightRay& b, double least_m) {
   const Vec3d between = b.origin - a.origin;
   const double cosine = a.direction.dot(b.direction), square_sine = 1 - cosine * cosine;
   if (square_sine < std::pow(std::sin(3 * kPi / 180), 2)) return std::nullopt;
@@ -27,14 +27,14 @@ std::optional<Vec3d> meeting_point(const LampRay& a, const LampRay& b, double le
   return (a.origin + ta * a.direction + b.origin + tb * b.direction) / 2;
 }
 
-std::optional<LampPlace> triangulate(std::span<const LampRay> rays, const Vec3d& guess) {
+std::optional<LampPlace> triangulate(std::span<const SightRay> rays, const Vec3d& guess) {
   if (rays.size() < 2) return std::nullopt;
   LampPlace place{guess, 0, 0};
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   for (int step = 0; step < kSteps; ++step) {
     information.setZero();
     Vec3d right = Vec3d::Zero();
-    for (const LampRay& ray : rays) {
+    for (const SightRay& ray : rays) {
       const double square = std::max((place.position - ray.origin).squaredNorm(), 1e-6);
       const Eigen::Matrix3d across =
           (Eigen::Matrix3d::Identity() - ray.direction * ray.direction.transpose()) / square;
@@ -47,7 +47,7 @@ std::optional<LampPlace> triangulate(std::span<const LampRay> rays, const Vec3d&
     if (!place.position.allFinite()) return std::nullopt;
   }
   double squares = 0;
-  for (const LampRay& ray : rays) {
+  for (const SightRay& ray : rays) {
     const Vec3d toward = place.position - ray.origin;
     if (!(toward.dot(ray.direction) > 0)) return std::nullopt;
     const double angle = std::atan2(toward.cross(ray.direction).norm(), toward.dot(ray.direction));

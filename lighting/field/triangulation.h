@@ -10,7 +10,7 @@
 namespace lightwell {
 
 // Toward a lamp, from where it was seen.
-struct LampRay {
+struct SightRay {
   Vec3d origin;     // metres
   Vec3d direction;  // unit
 };
@@ -23,11 +23,11 @@ struct LampPlace {
 
 // Where two rays pass each other closest, in the middle between them; none where that is behind an origin or nearer to it
 // than least_m, or where they are within 3° of parallel.
-std::optional<Vec3d> meeting_point(const LampRay& a, const LampRay& b, double least_m);
+std::optional<Vec3d> meeting_point(const SightRay& a, const SightRay& b, double least_m);
 
 // The place that rays see under the least square angle, from a first guess, by Gauss–Newton. Rays are taken to err by .4°
 // or as much as they scatter. None for fewer than two rays, rays from one place or parallel ones, and places behind an
 // origin.
-std::optional<LampPlace> triangulate(std::span<const LampRay> rays, const Vec3d& guess);
+std::optional<LampPlace> triangulate(std::span<const SightRay> rays, const Vec3d& guess);
 
 }  // namespace lightwell

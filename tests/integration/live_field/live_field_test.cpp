@@ -160,7 +160,7 @@ TEST_F(LiveStage, FieldOfFiveDaemonsIsTheStagesLightBetweenThem) {
 }
 
 TEST_F(LiveStage, ProbesThatGoFadeAndComeBack) {
-  for (const std::size_t n : {0, 1, 2}) start_probe(n);
+  for (const std::size_t n : {0u, 1u, 2u}) start_probe(n);
   start_field();
   const auto weight = [](const FieldFrame& f, std::size_t n) { return f.probes.at(n).weight; };
   ASSERT_TRUE(hear([&](const FieldFrame& f) {

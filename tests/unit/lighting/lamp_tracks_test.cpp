@@ -62,7 +62,7 @@ TEST(Triangulation, StatedUncertaintyIsThatOfNoisyRays) {
   double squares = 0, stated = 0;
   constexpr int kTrials = 500;
   for (int trial = 0; trial < kTrials; ++trial) {
-    std::vector<LampRay> rays;
+    std::vector<SightRay> rays;
     for (const Vec3d& from : kPlaces)
       rays.push_back(
           {from,
@@ -79,7 +79,7 @@ TEST(Triangulation, StatedUncertaintyIsThatOfNoisyRays) {
 }
 
 TEST(Triangulation, WhatRaysDoNotDetermineIsRefused) {
-  const LampRay one{{0, 0, 0}, {0, 1, 0}};
+  const SightRay one{{0, 0, 0}, {0, 1, 0}};
   EXPECT_FALSE(triangulate(std::vector{one}, {0, 1, 0}));
   EXPECT_FALSE(triangulate(std::vector{one, one}, {0, 1, 0}));
   EXPECT_FALSE(meeting_point(one, {{1, 0, 0}, {0, 1, 0}}, 0.1));                    // parallel
