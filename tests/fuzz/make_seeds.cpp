@@ -237,6 +237,7 @@ void tracking(const std::filesystem::path& folder) {
       folder / "opentrackio.json",
       std::string(1, '\x02') +
           R"({"static":{"camera":{"activeSensorPhysicalDimensions":{"width":36.0,"height":24.0}}},)"
+          R"("timing":{"sampleTimestamp":{"seconds":1718806554,"nanoseconds":500000000}},)"
           R"("lens":{"pinholeFocalLength":24.0},"transforms":[{"id":"Camera","translation":{"x":0,"y":2,"z":1.5},)"
           R"("rotation":{"pan":0,"tilt":45,"roll":0},"scale":{"x":1,"y":1,"z":1}}]})");
   write(folder / "opentrackio.cbor",
