@@ -200,10 +200,13 @@ Command add_field_live(CLI::App& field) {
   command->footer(
       "Example: lightwell field live --probe left=-1,1,0 --probe right=1,1,0 --bounds -2,0,-2,2,2,2\n"
       "NAME: what a daemon publishes as (probe.name in its configuration). Publishes lightwell/FieldFrame.");
-  command->add_option("--probe", o->probes, "A probe and its place, metres; once for each, up to 64")
+  command
+      ->add_option("--probe", o->probes,
+                   "A probe, its place (metres) and by how many degrees it stands turned about +Y; once for "
+                   "each, up to 64")
       ->required()
       ->allow_extra_args(false)
-      ->type_name("NAME=X,Y,Z");
+      ->type_name("NAME=X,Y,Z[,HEADING]");
   command->add_option("--grid", o->grid, "Points along each axis")
       ->capture_default_str()
       ->type_name("NX,NY,NZ");

@@ -9,6 +9,7 @@
 
 #include "interface/option_range.h"
 #include "interface/printable.h"
+#include "lighting/field/polar_turn.h"
 
 namespace lightwell {
 namespace {
@@ -37,23 +38,24 @@ Rgb mean_illuminance(const LightField& field) {
 Result<StageProbe> parse_stage_probe(const std::string& text) {
   const Error wrong{ErrorKind::usage,
                     "--probe is " + text +
-                        ", allowed: NAME=X,Y,Z, a name of 1 to 63 printable ASCII characters "
-                        "and three numbers, -100000 to 100000 metres"};
+                        ", allowed: NAME=X,Y,Z[,HEADING], a name of 1 to 63 printable ASCII characters, "
+                        "-100000 to 100000 metres, -360 to 360 degrees"};
   const std::size_t equals = text.rfind('=');
   if (equals == std::string::npos || equals == 0 || equals > 63) return wrong;
-  StageProbe probe{text.substr(0, equals), Vec3d::Zero()};
+  StageProbe probe;
+  probe.name = text.substr(0, equals);
   if (!std::all_of(probe.name.begin(), probe.name.end(), [](char c) { return c >= 0x20 && c < 0x7f; }))
     return wrong;
   std::string_view rest = std::string_view(text).substr(equals + 1);
-  for (int a = 0; a < 3; ++a) {
+  for (int i = 0; i < 4; ++i) {
     const std::size_t comma = rest.find(',');
-    if ((comma == std::string_view::npos) != (a == 2)) return wrong;
     const auto value = option_range::parse<double>(rest.substr(0, comma));
-    if (!value || !(std::abs(*value) <= 1e5)) return wrong;
-    probe.position[a] = *value;
-    if (a < 2) rest.remove_prefix(comma + 1);
+    if (!value || !(std::abs(*value) <= (i < 3 ? 1e5 : 360))) return wrong;
+    (i < 3 ? probe.position[i] : probe.heading_deg) = *value;
+    if (comma == std::string_view::npos) return i >= 2 ? Result<StageProbe>(probe) : wrong;
+    rest.remove_prefix(comma + 1);
   }
-  return probe;
+  return wrong;
 }
 
 LiveSession::LiveSession(const LiveFieldOptions& options, std::vector<StageProbe> probes)
@@ -90,7 +92,12 @@ void LiveSession::hear(const EnvironmentFrame& map, double now_s) {
   state.last_s = now_s;
   state.number = map.header.number;
   ++state.maps;
-  field_.update(index, map.map, now_s);
+  if (found->heading_deg != 0) {
+    turn_about_zenith(map.map, found->heading_deg * kPi / 180, turned_);
+    field_.update(index, turned_, now_s);
+  } else {
+    field_.update(index, map.map, now_s);
+  }
   frame_.header.capture_mono_ns = std::max(frame_.header.capture_mono_ns, map.header.capture_mono_ns);
   frame_.header.capture_utc_ns = std::max(frame_.header.capture_utc_ns, map.header.capture_utc_ns);
 }

@@ -17,9 +17,11 @@ namespace lightwell {
 struct StageProbe {
   std::string name;  // as its daemon publishes it
   Vec3d position = Vec3d::Zero();
+  double heading_deg =
+      0;  // the world's azimuth of the probe's own azimuth 0: by how much it was set up turned about +Y
 };
 
-// NAME=X,Y,Z, metres. usage: names what was given and what is allowed.
+// NAME=X,Y,Z or NAME=X,Y,Z,HEADING, metres and degrees. usage: names what was given and what is allowed.
 Result<StageProbe> parse_stage_probe(const std::string& text);
 
 // A live field as messages: maps of probes come in, fields go out, and what happens to the probes is said in words, each
@@ -52,6 +54,7 @@ class LiveSession {
   std::vector<StageProbe> probes_;
   std::vector<ProbeState> states_;
   LiveField field_;
+  PolarMap turned_;
   FieldFrame frame_;
   std::set<std::string> strangers_;
   std::optional<double> begin_s_;

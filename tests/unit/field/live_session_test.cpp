@@ -5,7 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "lighting/field/polar_turn.h"
 
 namespace lightwell {
 namespace {
@@ -36,9 +40,11 @@ TEST(StageProbe, IsReadAndRefused) {
   ASSERT_TRUE(probe);
   EXPECT_EQ(probe->name, "left");
   EXPECT_EQ(probe->position, Vec3d(-1, 0.5, 2));
+  EXPECT_EQ(probe->heading_deg, 0);
   EXPECT_EQ(parse_stage_probe("a=b=1,2,3")->name, "a=b");
+  EXPECT_EQ(parse_stage_probe("left=1,2,3,-90")->heading_deg, -90);
   for (const std::string& wrong :
-       {std::string("left"), std::string("=1,2,3"), std::string("left=1,2"), std::string("left=1,2,3,4"),
+       {std::string("left"), std::string("=1,2,3"), std::string("left=1,2"), std::string("left=1,2,3,4,5"),
         std::string("left=1,2,nan"), std::string("left=1,2,1e9"), std::string("left=1,,2"),
         std::string("l\x1b=1,2,3"), std::string(64, 'x') + "=1,2,3"}) {
     const auto refused = parse_stage_probe(wrong);
@@ -67,6 +73,37 @@ TEST(LiveSession, SaysOnceWhatHappensToProbes) {
   EXPECT_THAT(later[1], HasSubstr("'right' was not heard yet; on the wire without a place: other"));
   session.hear(map_of("left", 3, 2), 6.1);
   EXPECT_THAT(session.news(), ElementsAre(HasSubstr("'left' is back")));
+}
+
+TEST(LiveSession, ATurnedProbesLightIsTurnedBack) {
+  // A bright quarter about +Z, the azimuth 0; seen by a probe whose own azimuth 0 points along +X, at its azimuth -90 degrees.
+  EnvironmentFrame straight = map_of("left", 1, 1), turned = map_of("left", 1, 1);
+  for (std::size_t bin = 0; bin < straight.map.grid.size(); ++bin) {
+    const std::size_t sector = bin % 60;
+    if (sector < 7 || sector >= 53) straight.map.radiance[bin] = 5;
+    if (sector >= 38 && sector < 52) turned.map.radiance[bin] = 5;
+  }
+  LiveSession a(options(), {{"left", {0, 0, 0}}}), b(options(), {{"left", {0, 0, 0}, 90}});
+  a.hear(straight, 0);
+  b.hear(turned, 0);
+  const FieldFrame& expected = a.make(0);
+  const FieldFrame& found = b.make(0);
+  ASSERT_EQ(expected.field.radiance.size(), found.field.radiance.size());
+  for (std::size_t i = 0; i < expected.field.radiance.size(); ++i)
+    ASSERT_NEAR(found.field.radiance[i], expected.field.radiance[i], 1e-4);
+}
+
+TEST(PolarTurn, KeepsEachRingsSumAndTurnsByPartsOfASector) {
+  PolarMap map = PolarMap::make({.rings = 3, .sectors = 8}, 3), turned;
+  for (std::size_t i = 0; i < map.radiance.size(); ++i) map.radiance[i] = static_cast<float>((i * 7) % 11);
+  turn_about_zenith(map, 2 * kPi / 8 * 2.25, turned);
+  EXPECT_FLOAT_EQ(turned.radiance[2], 0.75f * map.radiance[0] + 0.25f * map.radiance[7]);
+  for (std::size_t row = 0; row < map.radiance.size(); row += 8)
+    EXPECT_NEAR(std::accumulate(map.radiance.begin() + static_cast<std::ptrdiff_t>(row),
+                                map.radiance.begin() + static_cast<std::ptrdiff_t>(row + 8), 0.0),
+                std::accumulate(turned.radiance.begin() + static_cast<std::ptrdiff_t>(row),
+                                turned.radiance.begin() + static_cast<std::ptrdiff_t>(row + 8), 0.0),
+                1e-4);
 }
 
 TEST(LiveSession, FieldsSayWhatTheyAreMadeOf) {
