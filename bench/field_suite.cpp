@@ -5,25 +5,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
-#include <limits>
 #include <string>
-#include <thread>
 
 #include "bench/field_live.h"
+#include "bench/field_rows.h"
 #include "bench/field_stage.h"
 #include "bench/splat_in_space.h"
 #include "bench/suite.h"
-#include "bench/temporary_folder.h"
-#include "field/field_builder.h"
 #include "tests/support/analytic_fields.h"
 
 namespace lightwell::bench {
 namespace {
-
-FieldGrid cube(int side) {
-  return {{side, side, side}, Vec3d::Zero(), Vec3d::Ones()};
-}
 
 LightField splat_in_space(const test::AnalyticField& truth, const FieldGrid& grid,
                           std::span<const Vec3d> positions, const DirectionBins& bins, int degree) {
@@ -49,18 +41,9 @@ double edge_width_cells(const LightField& field) {
   return (last_above_10 - last_above_90) * (field.grid.size[0] - 1);
 }
 
-Row untimed(const std::string& setting, const std::string& name) {
-  Row row;
-  row.setting = setting;
-  row.name = name;
-  row.timing.p10_ms = std::numeric_limits<double>::quiet_NaN();
-  row.timing.runs = 1;
-  return row;
-}
-
 // Errors at points between grid points, 1000 probes, 16³; the time is that of the whole, one thread.
 std::vector<Row> error_rows_of_fields() {
-  const FieldGrid grid = cube(16);
+  const FieldGrid grid = unit_cube(16);
   const auto positions = test::random_positions(1000, 1);
   const DirectionBins bins(LatLongProbe{}, 256, 128, direction_count_for(16), 4);
   const std::vector<std::pair<std::string, test::AnalyticField>> truths = {
@@ -68,7 +51,7 @@ std::vector<Row> error_rows_of_fields() {
   std::vector<Row> rows;
   for (const auto& [name, truth] : truths)
     for (const std::string method : {"splat in space (Löw 2009)", "low", "best"}) {
-      Row row = untimed("error, " + name + ", 1000 probes, 16 cubed", method);
+      Row row = row_of_one_run("error, " + name + ", 1000 probes, 16 cubed", method, 0);
       const auto begin = std::chrono::steady_clock::now();
       const LightField field =
           method == "low"    ? test::build_field(truth, grid, positions, bins, 4, FieldMethod::low).field
@@ -85,7 +68,7 @@ std::vector<Row> error_rows_of_fields() {
 
 // One direction of a tenth of the paper's first scene, one thread: 440 probes, 64³, degree 4.
 std::vector<Row> direction_rows(const Options& options) {
-  const FieldGrid grid = cube(64);
+  const FieldGrid grid = unit_cube(64);
   const auto positions = test::random_positions(440, 1);
   const DirectionBins bins(LatLongProbe{}, 256, 128, 1000, 4);
   std::vector<std::vector<Rgb>> seen;
@@ -130,38 +113,6 @@ std::vector<Row> direction_rows(const Options& options) {
   return rows;
 }
 
-// A whole build from pictures in memory: cut, sorted on disk, resampled.
-Row build_row(const std::string& setting, std::size_t probes, int side, const ProbeProjection& projection,
-              int width, int height) {
-  const TemporaryFolder folder;
-  ProbeTake take;
-  take.positions = test::random_positions(probes, 1);
-  // Even pictures cost nothing to make, so that the time is that of the build, which does not depend on what they show.
-  take.picture = [&](std::size_t i) -> Result<LatLongImage> {
-    const auto light = static_cast<float>(1 + take.positions[i].x());
-    return LatLongImage{
-        width, height,
-        std::vector<Rgb>(static_cast<std::size_t>(width * height), Rgb(light, 1, 0.5f * light))};
-  };
-  take.name = [](std::size_t i) { return std::to_string(i); };
-  FieldBuildOptions options;
-  options.grid = cube(side);
-  options.projection = projection;
-  options.threads = std::max(1u, std::thread::hardware_concurrency());
-  options.scratch_folder = folder.path();
-  Row row = untimed(setting, std::to_string(probes) + " probes, " + std::to_string(side) + " cubed");
-  const auto begin = std::chrono::steady_clock::now();
-  const auto build = build_field(take, options);
-  verify_bug(build.ok(), "bench field refused");
-  row.timing.p50_ms = row.timing.p99_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-  row.values = {{"probes", static_cast<double>(probes)},
-                {"points", static_cast<double>(options.grid.points())},
-                {"directions", build->directions},
-                {"threads", options.threads}};
-  return row;
-}
-
 }  // namespace
 
 std::vector<Row> field_suite(const Options& options) {
@@ -169,14 +120,9 @@ std::vector<Row> field_suite(const Options& options) {
   for (Row& row : direction_rows(options)) rows.push_back(std::move(row));
   for (Row& row : stage_rows()) rows.push_back(std::move(row));
   for (Row& row : live_rows(options)) rows.push_back(std::move(row));
-  for (const std::size_t probes : {250u, 500u, 1000u, 2000u})
-    rows.push_back(build_row("growth with probes", probes, 24, LatLongProbe{}, 64, 32));
-  for (const int side : {12, 16, 24, 32})
-    rows.push_back(build_row("growth with points", 500, side, LatLongProbe{}, 64, 32));
-  // The paper's shape takes minutes on a slow machine: asked for with --seconds 10 or more.
-  if (options.seconds_per_case >= 10)
-    rows.push_back(build_row("shape of 2009's first scene, 250x250", 4397, 64,
-                             MirrorBallProbe{0.05, std::nullopt, 2.1 * kPi / 180}, 250, 250));
+  for (Row& row : pipeline_rows(options)) rows.push_back(std::move(row));
+  for (Row& row : field_precision_rows()) rows.push_back(std::move(row));
+  for (Row& row : field_growth_rows(options)) rows.push_back(std::move(row));
   return rows;
 }
 

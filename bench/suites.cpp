@@ -6,6 +6,7 @@
 
 #include "bench/coherence.h"
 #include "bench/error_curves.h"
+#include "bench/field_rows.h"
 #include "bench/lights_suite.h"
 #include "bench/render_suite.h"
 #include "bench/suite.h"
@@ -50,7 +51,7 @@ const std::vector<Suite>& suites() {
       {"frame", frame_suite},
       {"lights", lights_rows, curve_figures},
       {"fit", fit_suite, fit_figures},
-      {"field", field_suite},
+      {"field", field_suite, field_figures},
       {"lens", lens_suite},
       {"response", response_suite},
       {"sync", sync_suite},

@@ -50,5 +50,27 @@ TEST(HarmonicRotation, ProjectionAndReconstructionAreOne) {
     EXPECT_LT((none.band(l) - Eigen::MatrixXd::Identity(2 * l + 1, 2 * l + 1)).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+// As a shader does it: coefficients, rotation and sums in floats.
+TEST(HarmonicRotation, InFloatsKeepsFiveDigits) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Matrix3d rotation = random_rotation(random);
+    const HarmonicRotation turn(rotation, 8);
+    Eigen::VectorXd light(harmonic_count(8)), y_here(light.size()), y_there(light.size());
+    for (double& value : light) value = normal(random);
+    light.normalize();
+    Eigen::VectorXf turned(light.size());
+    for (int l = 0; l <= 8; ++l)
+      turned.segment(l * l, 2 * l + 1) =
+          turn.band(l).cast<float>() * light.segment(l * l, 2 * l + 1).cast<float>();
+    const Vec3d d = Vec3d(normal(random), normal(random), normal(random)).normalized();
+    harmonics(d, 8, y_here.data());
+    harmonics(rotation * d, 8, y_there.data());
+    // Reconstruction after the turn is that before it; values are at most √(81/4π) for a light of norm 1.
+    EXPECT_NEAR(y_there.cast<float>().dot(turned), y_here.dot(light), 1e-5);
+  }
+}
+
 }  // namespace
 }  // namespace lightwell

@@ -54,6 +54,32 @@ TEST(PhongLobe, TurnedIsTheLobeOfTheTurnedAxis) {
     for (int m = 1; m <= l; ++m) EXPECT_NEAR(zonal[harmonic_index(l, m)], 0, 1e-15);
 }
 
+TEST(PhongLobe, InFloatsIsTheLobeToFiveDigits) {
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  for (const double s : {0.0, 1.0, 6.0, 50.0})
+    for (int i = 0; i < 20; ++i) {
+      const Vec3d axis = Vec3d(normal(random), normal(random), normal(random)).normalized();
+      const Vec3d at = Vec3d(normal(random), normal(random), normal(random)).normalized();
+      double moments[kMostDegree + 1], exact[harmonic_count(8)], y_axis[harmonic_count(8)],
+          y_at[harmonic_count(8)];
+      phong_moments(s, 8, moments);
+      phong_lobe(axis, s, 8, exact);
+      harmonics(axis, 8, y_axis);
+      harmonics(at, 8, y_at);
+      float turned = 0;  // the zonal harmonics turned to the axis, and their sum, in floats
+      double expected = 0;
+      for (int l = 0; l <= 8; ++l)
+        for (int m = -l; m <= l; ++m) {
+          const int k = harmonic_index(l, m);
+          turned += static_cast<float>(2 * kPi * moments[l]) * static_cast<float>(y_axis[k]) *
+                    static_cast<float>(y_at[k]);
+          expected += exact[k] * y_at[k];
+        }
+      EXPECT_NEAR(static_cast<double>(turned), expected, 1e-5) << s;  // of a lobe whose peak is 1
+    }
+}
+
 TEST(PhongLobe, TruncationIsWhatTheSumLeavesOut) {
   EXPECT_NEAR(phong_truncation(6, 4), 0.14, 0.005);
   EXPECT_LT(phong_truncation(6, 8), phong_truncation(6, 4));
