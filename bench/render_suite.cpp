@@ -362,6 +362,7 @@ std::vector<Row> render_suite(const Options& options) {
   add_comparisons(rows, judged);
   if (asked("growth")) take(render_growth_rows(options));
   if (asked("gloss")) take(render_gloss_rows());
+  if (asked("field light")) take(render_field_rows(options));
   if (asked("steadiness")) take(render_steadiness_rows(options));
   return rows;
 }

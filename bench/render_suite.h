@@ -23,6 +23,8 @@ std::vector<Row> render_growth_rows(const Options& options);
 std::vector<Row> render_steadiness_rows(const Options& options);
 // The error on each glossy object beside that on the same object made matte.
 std::vector<Row> render_gloss_rows();
+// A light field against harmonics that are the same everywhere.
+std::vector<Row> render_field_rows(const Options& options);
 // Mitsuba 3 on the same scenes, by the script in options.peers_folder.
 std::vector<Row> mitsuba_rows(const std::vector<pictures::JudgedPicture>& judged, const Options& options);
 

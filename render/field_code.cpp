@@ -105,7 +105,10 @@ std::string FieldLayout::code(bool lobes) const {
   const int harmonics = harmonic_count(degree_);
   std::string text = "#define BANDS " + std::to_string(degree_ + 1) + "\n#define MAIN_LIGHTS " +
                      std::to_string(main_lights_) + "\n#define FIELD_TEXTURES " + std::to_string(textures_) +
-                     "\nuniform sampler3D field[FIELD_TEXTURES];\n";
+                     "\nuniform sampler3D field[FIELD_TEXTURES];\n"
+                     "#ifndef FIELD_TEXEL\n"
+                     "#define FIELD_TEXEL(number, map, corner) texture(field[map], place + (corner))\n"
+                     "#endif\n";
   // Those that no lobe needs stand last, and with it their texels.
   std::size_t count = triples_.size();
   if (!lobes)
@@ -119,9 +122,9 @@ std::string FieldLayout::code(bool lobes) const {
   const int texels_here = static_cast<int>(3 * count + 3) / 4;
   for (int i = 0; i < texels_here; ++i) {
     const Tile t = tile(i);
-    text += "  vec4 " + indexed("t", i) + " = texture(field[" + std::to_string(t.texture) +
-            "], place + vec3(" + number(static_cast<double>(t.corner[0]) / size[0]) + ", " +
-            number(static_cast<double>(t.corner[1]) / size[1]) + ", " +
+    text += "  vec4 " + indexed("t", i) + " = FIELD_TEXEL(" + std::to_string(i) + ", " +
+            std::to_string(t.texture) + ", vec3(" + number(static_cast<double>(t.corner[0]) / size[0]) +
+            ", " + number(static_cast<double>(t.corner[1]) / size[1]) + ", " +
             number(static_cast<double>(t.corner[2]) / size[2]) + "));\n";
   }
   for (std::size_t i = 0; i < count; ++i) {

@@ -46,7 +46,7 @@ class FieldLayout {
   // b[l] = Σ_m L_lm Y_lm(d), bands_of_irradiance(d, b) those that irradiance takes, the others 0; bands_of_light(cosine, b) what
   // they are for a light of illuminance 1 at that angle to d; light_here(i) is the illuminance of a main light; kIrradiance
   // holds A_l. place: the point's texel in the first tile, in texture coordinates. lobes: without them bands() is not there, and
-  // the texels that it alone needs are not looked up.
+  // the texels that it alone needs are not looked up. FIELD_TEXEL, where it is defined before, takes the look-up's place.
   [[nodiscard]] std::string code(bool lobes) const;
 
   bool operator==(const FieldLayout&) const = default;

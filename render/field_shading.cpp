@@ -30,10 +30,11 @@ LightSet light_set_of(const LightField& field, const MainLights& main) {
 
 }  // namespace
 
-FieldShading FieldShading::create(const MaterialKinds& kinds, bool nothing_casts,
-                                  const ShadowLookUp& shadows) {
+FieldShading FieldShading::create(const MaterialKinds& kinds, bool nothing_casts, const ShadowLookUp& shadows,
+                                  const std::string& facts) {
   FieldShading shading;
   shading.kinds_ = kinds;
+  shading.facts_ = facts;
   shading.look_up_ = shadow_look_up(nothing_casts, shadows);
   shading.no_look_up_ = shadow_look_up(true, shadows);
   shading.light_block_ =
@@ -63,9 +64,10 @@ Status FieldShading::set(const LightField& field, MainLights lights) {
 Status FieldShading::make_if_missing(bool shadows) {
   gl::Program& there = programs_[shadows ? 1 : 0];
   if (there.id() != 0 || textures_.layout().degree() == 0) return {};
-  auto program = gl::make_program("fullscreen_vertex", "field_fragment",
-                                  kinds_.facts() + (shadows ? look_up_ : no_look_up_) + lobes_.facts() +
-                                      textures_.layout().code(kinds_.lobes) + surface_code());
+  auto program =
+      gl::make_program("fullscreen_vertex", "field_fragment",
+                       facts_ + kinds_.facts() + (shadows ? look_up_ : no_look_up_) + lobes_.facts() +
+                           textures_.layout().code(kinds_.lobes) + surface_code());
   if (!program) return program.error();
   there = std::move(program).value();
   glUniformBlockBinding(there.id(), glGetUniformBlockIndex(there.id(), "Lights"), 0);

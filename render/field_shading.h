@@ -18,7 +18,9 @@ namespace lightwell::render {
 // light alone.
 class FieldShading {
  public:
-  static FieldShading create(const MaterialKinds& kinds, bool nothing_casts, const ShadowLookUp& shadows);
+  // facts: text before the shader's own
+  static FieldShading create(const MaterialKinds& kinds, bool nothing_casts, const ShadowLookUp& shadows,
+                             const std::string& facts = "");
   // Another field; of the same grid and degree, with as many main lights, it costs only its upload.
   // bad_input: larger than the driver's 3D textures (FieldLayout)
   Status set(const LightField& field, MainLights lights);
@@ -38,7 +40,7 @@ class FieldShading {
  private:
   Status make_if_missing(bool shadows);
   MaterialKinds kinds_;
-  std::string look_up_, no_look_up_;
+  std::string facts_, look_up_, no_look_up_;
   std::array<gl::Program, 2> programs_;  // [with shadows]
   FieldTextures textures_;
   LobeTables lobes_;

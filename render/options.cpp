@@ -79,6 +79,23 @@ Parsed parse_options(int argc, const char* const* argv) {
       ->check(whole_numbers(0, kMostMainLights))
       ->capture_default_str()
       ->needs(field);
+  auto* balls =
+      app.add_option_function<std::string>(
+             "--field-balls",
+             [&](const std::string& count) {
+               options.field_balls.emplace();
+               options.field_balls->most = count == "all" ? 0 : std::stoi(count);
+             },
+             "small balls that show the field's light: so many along each axis (2 to 512), or all: one "
+             "at every grid point")
+          ->check(CLI::IsMember({"all"}) | whole_numbers(2, 512))
+          ->needs(field);
+  std::string ball_look = "matt";
+  app.add_option("--field-ball-look", ball_look,
+                 "white and matt, or mirror: as sharp as the field's degree is")
+      ->check(CLI::IsMember({"matt", "mirror"}))
+      ->capture_default_str()
+      ->needs(balls);
   app.add_option("--lights", options.lights, "lights to make of the environment")
       ->check(whole_numbers(1, kMostLights))
       ->capture_default_str()
@@ -240,6 +257,7 @@ Parsed parse_options(int argc, const char* const* argv) {
             complain("--background environment: a light set has no picture of its environment")};
   if (options.background_environment && !options.field.empty())
     return {std::nullopt, complain("--background environment: a field has no picture of its environment")};
+  if (options.field_balls) options.field_balls->mirror = ball_look == "mirror";
   options.look.operation = tone_map == "none" ? ToneMap::none : ToneMap::reinhard;
   options.look.display = display == "rec709"   ? Display::rec709
                          : display == "linear" ? Display::linear

@@ -9,6 +9,7 @@
 
 #include "lighting/decomposition/decompose.h"
 #include "lighting/light_set.h"
+#include "render/field_balls.h"
 #include "render/frame_name.h"
 #include "render/look.h"
 #include "render/tracking_stream.h"
@@ -25,6 +26,7 @@ struct Options {
   std::filesystem::path environment;
   std::filesystem::path field;
   int field_shadows = 4;  // main lights of a field that cast shadows
+  std::optional<FieldBallsOptions> field_balls;
   int lights = 72;
   Method method = Method::best;
   Coverage coverage = Coverage::hemisphere;

@@ -53,6 +53,11 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   if (!surfaces) return surfaces.error();
   if (Status s = surfaces->use_light_lists(options.light_lists); !s) return s.error();
   r.kinds_ = material_kinds(scene);
+  if (options.field_balls) {
+    auto balls = FieldBalls::create(*options.field_balls, scene.materials.size() - 1, r.kinds_.emission);
+    if (!balls) return balls.error();
+    r.balls_.emplace(std::move(balls).value());
+  }
   auto background = gl::make_program("fullscreen_vertex", "background_fragment");
   if (!background) return background.error();
   r.gbuffer_ = std::move(gbuffer).value();
@@ -152,6 +157,7 @@ Status Renderer::set_field(const LightField& field, MainLights main_lights) {
   if (!field_)
     field_ = FieldShading::create(kinds_, nothing_casts_, {options_.simplify_casters, options_.soft_edges});
   if (Status s = field_->set(field, std::move(main_lights)); !s) return s;
+  if (balls_) balls_->set_grid(field.grid);
   return compositor_ || !shadows_ ? field_->make_unshadowed() : Status();
 }
 
@@ -244,7 +250,10 @@ Status Renderer::render_samples(std::span<LightRow> all, const LightSet& lights,
         const View view =
             make_view(camera, options_.width, options_.height, sample_offset(sample, options_.samples));
         // With one sample a pixel the G-buffer of the first block serves all blocks.
-        if (first_block || samples > 1) gbuffer_.draw(view);
+        if (first_block || samples > 1) {
+          gbuffer_.draw(view);
+          if (field_balls() > 0) balls_->draw(view);
+        }
         time = lap(time, times_.gbuffer_ms);
         shade({view, lights.ambient, first_block, last_block, weight}, start_sum, environment_turn_rad);
         start_sum = false;

@@ -13,6 +13,7 @@
 #include "render/casters.h"
 #include "render/compositor.h"
 #include "render/cutout_casters.h"
+#include "render/field_balls.h"
 #include "render/field_shading.h"
 #include "render/gbuffer.h"
 #include "render/graphics_reset.h"
@@ -36,6 +37,8 @@ struct RendererOptions {
   int interleave = 2;
   bool light_lists = false;     // SurfaceShading::use_light_lists
   bool measure_passes = false;  // waits for each pass, to time it
+  // Balls of a field that is set; the scene's last material is theirs (field_ball_material).
+  std::optional<FieldBallsOptions> field_balls;
 };
 
 struct PassTimes {
@@ -66,6 +69,8 @@ class Renderer {
   Status set_field(const LightField& field, MainLights main_lights);
   // nullptr: none is set.
   [[nodiscard]] const FieldShading* field() const { return field_ ? &*field_ : nullptr; }
+  // 0 before a field is set.
+  [[nodiscard]] std::size_t field_balls() const { return field_ && balls_ ? balls_->count() : 0; }
   // environment_turn_rad turns the shown environment about +Y (a light at azimuth λ comes to λ + angle).
   Status render(const LightSet& lights, const SceneCamera& camera, double environment_turn_rad = 0);
   // Puts opaque pixels of a picture over the last one rendered. left, bottom: pixels from its lower left corner.
@@ -150,6 +155,7 @@ class Renderer {
   SurfaceShading surfaces_;
   MaterialKinds kinds_;
   std::optional<FieldShading> field_;
+  std::optional<FieldBalls> balls_;
   gl::Program background_;
   gl::Program lay_over_;  // made when it is first needed
   gl::VertexArray no_vertices_;

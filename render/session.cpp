@@ -77,6 +77,8 @@ class Session {
     renderer_options.interleave = options_.interleave;
     renderer_options.light_lists = options_.light_lists;
     renderer_options.measure_passes = !options_.stats.empty();
+    renderer_options.field_balls = options_.field_balls;
+    if (options_.field_balls) scene_.materials.push_back(field_ball_material(*options_.field_balls));
     auto renderer = Renderer::create(scene_, renderer_options);
     if (!renderer) return renderer.error();
     renderer_.emplace(std::move(renderer).value());
@@ -238,7 +240,7 @@ class Session {
         field, find_main_lights(field, options_.field_shadows, centre - reach, centre + reach));
     if (!set) return Error{set.error().kind, options_.field.string() + ": " + set.error().message};
     shown_field_ = source_.field_version();
-    statistics_.field = field_statistics(*renderer_->field());
+    statistics_.field = field_statistics(*renderer_);
     return {};
   }
 

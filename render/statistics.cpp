@@ -54,14 +54,16 @@ std::string Statistics::json() const {
                        {"degree", field->degree},
                        {"main_lights", field->main_lights},
                        {"texture_units", field->texture_units},
-                       {"bytes", field->bytes}};
+                       {"bytes", field->bytes},
+                       {"balls", field->balls}};
   return report.dump(2) + "\n";
 }
 
-Statistics::Field field_statistics(const FieldShading& field) {
+Statistics::Field field_statistics(const Renderer& renderer) {
+  const FieldShading& field = *renderer.field();
   const FieldLayout& layout = field.layout();
-  return {layout.grid().size, layout.degree(), field.main_lights().lights.size(), field.texture_units(),
-          layout.bytes()};
+  return {layout.grid().size,    layout.degree(), field.main_lights().lights.size(),
+          field.texture_units(), layout.bytes(),  renderer.field_balls()};
 }
 
 }  // namespace lightwell::render

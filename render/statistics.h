@@ -39,6 +39,7 @@ struct Statistics {
     std::size_t main_lights = 0;
     int texture_units = 0;  // that its shading binds
     std::size_t bytes = 0;  // of its textures
+    std::size_t balls = 0;
   };
   std::optional<Field> field;
   std::string gl_renderer;
@@ -47,6 +48,7 @@ struct Statistics {
   [[nodiscard]] std::string json() const;
 };
 
-Statistics::Field field_statistics(const FieldShading& field);
+// Of the field that is set.
+Statistics::Field field_statistics(const Renderer& renderer);
 
 }  // namespace lightwell::render

@@ -85,6 +85,24 @@ TEST_F(FieldCommand, EvenLightReturnsAlbedoAndStatisticsTellOfTheField) {
   for (const char* pass : {"gbuffer", "shading", "tonemap"}) EXPECT_GT(s["passes"][pass], 0);
 }
 
+// Under even light every ball is as bright as the light, on the ground that returns .42 of it.
+TEST_F(FieldCommand, BallsStandAtGridPointsAndShowTheLight) {
+  for (const char* look : {"matt", "mirror"})
+    for (const char* count : {"all", "2"}) {
+      ChildProcess program =
+          start_render(folder_.path(), {"--scene", LIGHTWELL_STAGE, "--field", field_, "--headless", "--size",
+                                        "160x120", "--field-balls", count, "--field-ball-look", look, "--out",
+                                        file("balls.exr"), "--stats", file("stats.json")});
+      ASSERT_EQ(program.wait(), 0) << program.stderr_text();
+      EXPECT_EQ(stats()["field"]["balls"], *count == 'a' ? 18 : 8);
+      const auto picture = read_environment(file("balls.exr"));
+      ASSERT_TRUE(picture.ok());
+      int bright = 0;
+      for (const Rgb& c : picture->image.pixels) bright += std::abs(c[0] - 1) < 2e-3f;
+      EXPECT_GT(bright, 20) << look << " " << count;
+    }
+}
+
 TEST_F(FieldCommand, MainLightsCastShadowsAsManyAsAreAskedFor) {
   ASSERT_TRUE(write_field(field_, even_field(20), {}));
   for (const char* count : {"0", "3"}) {
@@ -118,6 +136,9 @@ TEST_F(FieldCommand, OtherLightAndWhatGoesWithItIsRefused) {
   expect_refused(arguments({"--background", "environment"}), 2, "--background");
   expect_refused(arguments({"--field-shadows", "9"}), 2, "--field-shadows");
   expect_refused(arguments({"--out", field_ + ".exr", "--stats", field_}), 2, "is also the input");
+  expect_refused(arguments({"--field-balls", "1"}), 2, "--field-balls");
+  expect_refused(arguments({"--field-balls", "many"}), 2, "--field-balls");
+  expect_refused(arguments({"--field-ball-look", "mirror"}), 2, "--field-balls");
   expect_refused({"--scene", LIGHTWELL_STAGE, "--environment", "a.exr", "--field-shadows", "1"}, 2,
                  "--field");
 }
