@@ -13,6 +13,7 @@
 #include <ImfOutputFile.h>
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
 #include <ImfTileDescription.h>
 
 #include <algorithm>
@@ -272,7 +273,8 @@ Result<LatLongImage> read_exr(std::string_view bytes, const std::string& name, s
 }
 
 Result<std::string> exr_from_floats(int width, int height, std::string_view channels,
-                                    std::span<const float> pixels, ExrContent content) {
+                                    std::span<const float> pixels, ExrContent content,
+                                    std::span<const ExrText> texts) {
   verify_bug(width > 0 && height > 0 &&
                  pixels.size() ==
                      channels.size() * static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
@@ -282,6 +284,7 @@ Result<std::string> exr_from_floats(int width, int height, std::string_view chan
     header.compression() = Imf::ZIP_COMPRESSION;
     Imf::addChromaticities(header, Imf::Chromaticities());  // OpenEXR's default is Rec. 709, D65
     if (content == ExrContent::lat_long_environment) Imf::addEnvmap(header, Imf::ENVMAP_LATLONG);
+    for (const ExrText& text : texts) header.insert(text.name, Imf::StringAttribute(text.value));
     Imf::FrameBuffer frame;
     const std::size_t stride = channels.size() * sizeof(float);
     for (std::size_t c = 0; c < channels.size(); ++c) {
@@ -299,6 +302,23 @@ Result<std::string> exr_from_floats(int width, int height, std::string_view chan
     return memory.take();
   } catch (const std::exception& error) {
     return Error{ErrorKind::failed, "cannot encode as EXR: " + first_line(error.what())};
+  }
+}
+
+Result<std::optional<std::string>> exr_text(std::string_view bytes, const std::string& attribute,
+                                            const std::string& name) {
+  if (!is_exr(bytes)) return bad(name, "is no EXR file");
+  if (!attributes_fit(bytes)) return bad(name, "truncated or damaged EXR header");
+  try {
+    MemoryInput memory(bytes, name);
+    constexpr bool kRepairOffsets = false;
+    Imf::MultiPartInputFile file(memory, kNoThreads, kRepairOffsets);
+    const auto* text = file.header(0).findTypedAttribute<Imf::StringAttribute>(attribute);
+    return text == nullptr ? std::nullopt : std::optional(text->value());
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception&) {
+    return bad(name, "truncated or damaged image data");
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,10 +27,20 @@ Result<LatLongImage> read_exr(std::string_view bytes, const std::string& name_fo
 // What an image is of: written as the envmap attribute.
 enum class ExrContent { picture, lat_long_environment };
 
+// A header's text attribute.
+struct ExrText {
+  std::string name, value;
+};
+
 // The bytes of an EXR file: 32 bit float, ZIP, linear Rec. 709. Row 0 at the top.
 // channels: one letter each, in the order of the samples, e.g. "RGBA"; pixels: [height][width][channel]
 // failed: not enough memory, or a size EXR does not have
 Result<std::string> exr_from_floats(int width, int height, std::string_view channels,
-                                    std::span<const float> pixels, ExrContent content);
+                                    std::span<const float> pixels, ExrContent content,
+                                    std::span<const ExrText> texts = {});
+
+// A text attribute of the first part; nothing where it has none of the name. bad_input: no EXR, or a damaged header.
+Result<std::optional<std::string>> exr_text(std::string_view bytes, const std::string& attribute,
+                                            const std::string& name_for_errors);
 
 }  // namespace lightwell

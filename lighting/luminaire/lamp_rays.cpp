@@ -114,13 +114,13 @@ std::vector<double> node_solid_angles(FarField table) {
 
 }  // namespace
 
-LampOfRays bin_rays(std::span<const LampRay> rays, const RayBinning& options) {
+Luminaire bin_rays(std::span<const LampRay> rays, const RayBinning& options) {
   verify_bug(!rays.empty() && options.positions >= 2 && options.pixels >= 2, "nothing to bin, or no bins");
-  LampOfRays lamp;
-  LampImages& images = lamp.near.intensity;
+  Luminaire lamp;
+  LampImages& images = lamp.near.emplace().intensity;
   images.planes = planes_of(rays, options);
   images.values.assign(images.planes.images() * images.planes.image_size(), Rgb::Zero());
-  FarField& rest = lamp.rest;
+  FarField& rest = lamp.far.emplace();
   rest.horizontal_deg.clear();
   for (int h = 0; h < kRestPlanes; ++h) rest.horizontal_deg.push_back(360.0 * h / kRestPlanes);
   for (int v = 0; v <= kRestAngles; ++v) rest.vertical_deg.push_back(180.0 * v / kRestAngles);
@@ -141,15 +141,6 @@ LampOfRays bin_rays(std::span<const LampRay> rays, const RayBinning& options) {
   for (std::size_t h = 0; h < rest.horizontal_deg.size(); ++h)
     for (std::size_t v = 0; v < rest.vertical_deg.size(); ++v) rest.at(h, v) /= angles[v];
   return lamp;
-}
-
-Rgbd illuminance(const LampOfRays& lamp, const Vec3d& point, const Vec3d& normal) {
-  const Vec3d middle(0, 0, lamp.near.intensity.planes.z_m);
-  return illuminance(lamp.near, point, normal) + illuminance(lamp.rest, Vec3d(point - middle), normal);
-}
-
-double luminous_flux(const LampOfRays& lamp) {
-  return luminance(luminous_flux(lamp.near)) + luminous_flux(lamp.rest);
 }
 
 }  // namespace lightwell

@@ -4,8 +4,7 @@
 
 #include <span>
 
-#include "lighting/luminaire/far_field.h"
-#include "lighting/luminaire/near_field.h"
+#include "lighting/luminaire/luminaire.h"
 
 namespace lightwell {
 
@@ -16,13 +15,6 @@ struct LampRay {
   double flux_lm = 0;
 };
 
-// A lamp made of rays: what shines below its sampling plane as point sources whose images are hemispheres, the rest, seldom
-// more than a trickle beside and behind it, as from one point.
-struct LampOfRays {
-  NearField near;
-  FarField rest;
-};
-
 struct RayBinning {
   int positions = 8;  // a side, over where 99.9 % of the flux crosses the sampling plane
   int pixels = 64;    // a side of an image
@@ -30,9 +22,9 @@ struct RayBinning {
 
 // Shares every ray out among the four nearest positions and pixels: no flux is lost. The sampling plane lies at the
 // origins' median height by flux. rays: at least one, flux above 0.
-LampOfRays bin_rays(std::span<const LampRay> rays, const RayBinning& options);
-
-Rgbd illuminance(const LampOfRays& lamp, const Vec3d& point, const Vec3d& normal);
-double luminous_flux(const LampOfRays& lamp);
+//
+// What shines below the sampling plane becomes its near field, point sources whose images are hemispheres; the rest, seldom
+// more than a trickle beside and behind it, its far field.
+Luminaire bin_rays(std::span<const LampRay> rays, const RayBinning& options);
 
 }  // namespace lightwell

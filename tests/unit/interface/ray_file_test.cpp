@@ -148,10 +148,10 @@ TEST(RayFile, ARealLedLightsPlanesAsItsRaysDo) {
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
   const auto file = read_tm25(path);
   ASSERT_TRUE(file) << file.error().message;
-  const LampOfRays lamp = bin_rays(file->rays, {});
+  const Luminaire lamp = bin_rays(file->rays, {});
   double flux = 0;
   for (const LampRay& ray : file->rays) flux += ray.flux_lm;
-  EXPECT_NEAR(luminous_flux(lamp) / flux, 1, 1e-4);
+  EXPECT_NEAR(luminous_flux(lamp)[1] / flux, 1, 1e-4);
   constexpr int kBins = 10, kPoints = 4;
   for (const double distance : {0.1, 0.3, 1.0}) {
     const double bin = 2 * distance / kBins;

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "interface/luminaire_file.h"
+#include "interface/option_range.h"
+#include "interface/photometric_file.h"
+#include "interface/printable.h"
+#include "interface/ray_file.h"
+#include "interface/same_file.h"
+
+namespace lightwell::cli {
+namespace {
+
+struct ImportArguments {
+  std::string file, out;
+  RayBinning rays;
+  bool json = false;
+};
+
+struct Imported {
+  Luminaire lamp;
+  double stated_flux_lm = 0;  // 0: not said
+  std::size_t rays = 0;
+  std::vector<std::string> remarks;
+};
+
+std::string ending_of(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return ending;
+}
+
+Result<Imported> import_rays(const ImportArguments& o) {
+  auto file = read_tm25(o.file);
+  if (!file) return file.error();
+  Imported out;
+  out.lamp = bin_rays(file->rays, o.rays);
+  out.lamp.name = file->name;
+  out.stated_flux_lm = file->stated_flux_lm;
+  out.rays = file->rays.size();
+  out.remarks = std::move(file->remarks);
+  return out;
+}
+
+Result<Imported> import_photometry(const ImportArguments& o) {
+  auto file = read_photometric_file(o.file);
+  if (!file) return file.error();
+  Imported out;
+  out.lamp = {file->name, std::nullopt, std::move(file->lamp)};
+  out.stated_flux_lm = file->stated_flux_lm.value_or(0);
+  out.remarks = std::move(file->remarks);
+  return out;
+}
+
+void report(const ImportArguments& o, const Imported& imported) {
+  for (const std::string& remark : imported.remarks)
+    std::fprintf(stderr, "lightwell: %s: %s\n", printable(o.file).c_str(), printable(remark).c_str());
+  const double flux = luminous_flux(imported.lamp)[1];
+  if (!o.json) {
+    std::printf("%s: %.6g lm%s\n", printable(o.out).c_str(), flux,
+                imported.lamp.near ? ", near field" : ", far field");
+    return;
+  }
+  nlohmann::ordered_json json = {{"schema", "lightwell.luminaire-import/1"},
+                                 {"out", o.out},
+                                 {"name", imported.lamp.name},
+                                 {"near_field", imported.lamp.near.has_value()},
+                                 {"flux_lm", flux}};
+  if (imported.stated_flux_lm > 0) json["stated_flux_lm"] = imported.stated_flux_lm;
+  if (imported.rays > 0) json["rays"] = imported.rays;
+  json["remarks"] = imported.remarks;
+  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+}
+
+int run(const ImportArguments& o) {
+  if (const Status other = check_output_is_no_input(o.out, {o.file}); !other) return fail(other.error());
+  const std::string ending = ending_of(o.file);
+  auto imported = ending == ".tm25ray" || ending == ".tm25" ? import_rays(o) : import_photometry(o);
+  if (!imported) return fail(imported.error());
+  if (const Status written = write_luminaire(o.out, imported->lamp); !written) return fail(written.error());
+  report(o, *imported);
+  return 0;
+}
+
+}  // namespace
+
+Command add_luminaire_import(CLI::App& luminaire) {
+  const auto o = std::make_shared<ImportArguments>();
+  CLI::App* command = luminaire.add_subcommand("import", "A lamp from a file of its maker");
+  command->footer(
+      "Example: lightwell luminaire import spot.ies --out spot.exr\n"
+      "         lightwell luminaire import led.tm25ray --out led.exr\n"
+      "LM-63 (.ies) and EULUMDAT (.ldt) tell how a lamp shines far away, ray files of TM-25 near by too");
+  command->add_option("file", o->file, "FILE.ies, FILE.ldt or FILE.tm25ray")->required()->type_name("FILE");
+  command->add_option("--positions", o->rays.positions, "Of a ray file: point sources a side")
+      ->check(whole_numbers(2, 64))
+      ->capture_default_str();
+  command->add_option("--pixels", o->rays.pixels, "Of a ray file: pixels a side of each source's image")
+      ->check(whole_numbers(8, 1024))
+      ->capture_default_str();
+  command->add_option("--out", o->out, "The lamp, EXR")->required()->check(output_file())->type_name("FILE");
+  command->add_flag("--json", o->json, "Machine-readable result on stdout");
+  return {command, [o] { return run(*o); }};
+}
+
+}  // namespace lightwell::cli
