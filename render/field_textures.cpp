@@ -21,12 +21,12 @@ gl::Texture make_volume(const std::array<int, 3>& size) {
 }
 
 // Half floats have eleven digits from 6e-5 to 65504: the largest number comes to 2^14 at most, so that what is a hundred
-// millionth of it still keeps its digits.
+// millionth of it still keeps its digits. The power of two keeps a reciprocal, however dark the field.
 float scale_of(const LightField& field, const MainLights& lights) {
   float most = 0;
   for (const float value : field.radiance) most = std::max(most, std::abs(value));
   for (const float value : lights.illuminance) most = std::max(most, value);
-  return most > 0 ? std::exp2(std::ceil(std::log2(most)) - 14) : 1.0f;
+  return most > 0 ? std::exp2(std::max(std::ceil(std::log2(most)) - 14, -120.0f)) : 1.0f;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "interface/field_file.h"
 #include "interface/printable.h"
 #include "lighting/decomposition/best_lights.h"
+#include "render/live_news.h"
 
 namespace lightwell::render {
 namespace {
@@ -82,9 +83,9 @@ class LiveLights final : public LightSource {
   LiveLights(const LiveOptions& options, std::unique_ptr<LightReader> lights,
              std::unique_ptr<EnvironmentReader> environment)
       : max_lights_(static_cast<std::size_t>(options.max_lights)),
-        domain_(options.dds.domain),
         reader_(std::move(lights)),
-        environment_reader_(std::move(environment)) {}
+        environment_reader_(std::move(environment)),
+        news_("light", options.dds.domain) {}
 
   Result<bool> update(int /*frame*/, std::chrono::milliseconds wait) override {
     if (environment_reader_ && environment_reader_->take(environment_frame_, std::chrono::milliseconds(0))) {
@@ -93,7 +94,7 @@ class LiveLights final : public LightSource {
     }
     const bool arrived = reader_->take(frame_, wait);
     if (arrived) lights_ = take_lights(frame_.light_set(), max_lights_);
-    tell(arrived);
+    news_.tell(reader_->age(), arrived, "probe '" + reader_->probe() + "'");
     return arrived;
   }
 
@@ -105,30 +106,14 @@ class LiveLights final : public LightSource {
   }
 
  private:
-  // A line a change of state, never a line a frame.
-  void tell(bool arrived) {
-    using namespace std::chrono_literals;
-    const auto age = reader_->age();
-    const State now = !age ? State::waiting : arrived || *age < 2s ? State::flowing : State::stopped;
-    if (now == told_) return;
-    if (now == State::waiting)
-      std::fprintf(stderr, "lightwell-render: waiting for light on DDS domain %d\n", domain_);
-    if (now == State::flowing)
-      std::fprintf(stderr, "lightwell-render: light from probe '%s'\n", reader_->probe().c_str());
-    if (now == State::stopped) std::fprintf(stderr, "lightwell-render: no light for 2 s; keeping the last\n");
-    told_ = now;
-  }
-
-  enum class State { unknown, waiting, flowing, stopped };
   std::size_t max_lights_;
-  int domain_;
   std::unique_ptr<LightReader> reader_;
   std::unique_ptr<EnvironmentReader> environment_reader_;
   LightFrame frame_;
   EnvironmentFrame environment_frame_;
   LatLongImage environment_;
   int environment_version_ = 0;
-  State told_ = State::unknown;
+  LiveNews news_;
 };
 
 }  // namespace

@@ -58,19 +58,20 @@ Parsed parse_options(int argc, const char* const* argv) {
   app.set_version_flag("--version", "lightwell 0.1.0");
   app.add_option("--scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
   auto* live = app.add_flag("--live", options.live, "light from a running daemon, over DDS");
-  app.add_option("--domain", options.domain, "DDS domain of --live")
-      ->check(whole_numbers(0, kMaxDdsDomain))
-      ->needs(live);
-  app.add_option("--interface", options.interface, "network interface of --live")
-      ->capture_default_str()
-      ->needs(live);
+  auto* domain = app.add_option("--domain", options.domain, "DDS domain of --live and --field live")
+                     ->check(whole_numbers(0, kMaxDdsDomain));
+  auto* interface =
+      app.add_option("--interface", options.interface, "network interface of --live and --field live")
+          ->capture_default_str();
   app.add_option("--light-set", options.light_set, "light from a lights.json")->excludes(live);
   auto* environment = app.add_option("--environment", options.environment,
                                      "light from a latitude–longitude image, EXR or Radiance HDR")
                           ->excludes(live)
                           ->excludes("--light-set");
   auto* field = app.add_option("--field", options.field,
-                               "light that differs from place to place, of lightwell field build (OpenVDB)")
+                               "light that differs from place to place: a file of lightwell field build "
+                               "(OpenVDB), or live: of a "
+                               "running lightwell field live, over DDS")
                     ->excludes(live)
                     ->excludes("--light-set")
                     ->excludes(environment);
@@ -222,6 +223,10 @@ Parsed parse_options(int argc, const char* const* argv) {
   if (!options.live && options.light_set.empty() && options.environment.empty() && options.field.empty())
     return {std::nullopt, complain("one of --live, --environment, --light-set and --field must say where the "
                                    "light comes from")};
+  options.live_field = options.field == "live";
+  for (const auto* option : {domain, interface})
+    if (!option->empty() && !options.light_is_live())
+      return {std::nullopt, complain(option->get_name() + ": only --live and --field live need it")};
   const auto chosen = method_from_name(method);
   if (!chosen) return {std::nullopt, complain("--method " + method + ": must be one of " + method_names())};
   options.method = *chosen;
@@ -249,7 +254,8 @@ Parsed parse_options(int argc, const char* const* argv) {
   outputs.push_back(options.stats.string());
   for (const std::string& output : outputs)
     if (const Status other = check_output_is_no_input(
-            output, {options.scene, options.environment, options.light_set, options.field, options.plate});
+            output, {options.scene, options.environment, options.light_set,
+                     options.live_field ? std::filesystem::path() : options.field, options.plate});
         !other)
       return {std::nullopt, complain(other.error().message)};
   if (options.background_environment && !options.light_set.empty())

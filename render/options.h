@@ -25,7 +25,8 @@ struct Options {
   std::filesystem::path light_set;
   std::filesystem::path environment;
   std::filesystem::path field;
-  int field_shadows = 4;  // main lights of a field that cast shadows
+  bool live_field = false;  // the field comes over DDS
+  int field_shadows = 4;    // main lights of a field that cast shadows
   std::optional<FieldBallsOptions> field_balls;
   int lights = 72;
   Method method = Method::best;
@@ -58,6 +59,9 @@ struct Options {
   std::optional<double> seconds;
   std::vector<FrameName> outputs;
   std::filesystem::path stats;
+
+  // Light that comes when it comes: frames follow the clock.
+  [[nodiscard]] bool light_is_live() const { return live || live_field; }
 };
 
 // Options, or the exit code where there is nothing to run (help, wrong usage: said on stderr in one line).

@@ -154,9 +154,14 @@ Status Renderer::set_shadows(bool on) {
 }
 
 Status Renderer::set_field(const LightField& field, MainLights main_lights) {
-  if (!field_)
-    field_ = FieldShading::create(kinds_, nothing_casts_, {options_.simplify_casters, options_.soft_edges});
-  if (Status s = field_->set(field, std::move(main_lights)); !s) return s;
+  if (field_) {
+    if (Status s = field_->set(field, std::move(main_lights)); !s) return s;
+  } else {
+    auto shading =
+        FieldShading::create(kinds_, nothing_casts_, {options_.simplify_casters, options_.soft_edges});
+    if (Status s = shading.set(field, std::move(main_lights)); !s) return s;
+    field_ = std::move(shading);
+  }
   if (balls_) balls_->set_grid(field.grid);
   return compositor_ || !shadows_ ? field_->make_unshadowed() : Status();
 }

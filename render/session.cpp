@@ -100,14 +100,17 @@ class Session {
   }
 
   Status run_off_screen() {
-    const std::optional<int> frames =
-        options_.frames || options_.seconds || options_.live ? options_.frames : std::optional<int>(1);
+    const std::optional<int> frames = options_.frames || options_.seconds || options_.light_is_live()
+                                          ? options_.frames
+                                          : std::optional<int>(1);
     while (!over(frames)) {
       const auto fresh = source_.update(frame_, std::chrono::milliseconds(20));
       if (!fresh) return fresh.error();
       // Live frames are as many as lights arrive: the same light twice would be the same picture.
-      if (!source_.ready() || (options_.live && !*fresh)) continue;
-      if (Status s = move_scene(options_.live); !s) return s;
+      if (!source_.ready() || (options_.light_is_live() && !*fresh)) continue;
+      if (Status s = show_newest_field(); !s) return s;
+      if (!options_.field.empty() && renderer_->field() == nullptr) continue;
+      if (Status s = move_scene(options_.light_is_live()); !s) return s;
       follow_tracking();
       if (Status s = render(camera_.camera); !s) return s;
     }
@@ -122,7 +125,7 @@ class Session {
       if (!fresh) return fresh.error();
       const auto [width, height] = screen.size();
       if (Status s = renderer_->resize(width, height); !s) return s;
-      if (Status s = move_scene(options_.live || !options_.frames); !s) return s;
+      if (Status s = move_scene(options_.light_is_live() || !options_.frames); !s) return s;
       follow_tracking();
       SceneCamera camera = camera_.camera;
       camera.aspect = 0;  // the screen's own
@@ -149,7 +152,7 @@ class Session {
           width > 0 && height > 0 && (*fresh || changed || moves || options_.frames.has_value());
       if (draw) {
         if (Status s = renderer_->resize(width, height); !s) return s;
-        if (Status s = move_scene(options_.live || !options_.frames); !s) return s;
+        if (Status s = move_scene(options_.light_is_live() || !options_.frames); !s) return s;
         if (moves || tracked) window.follow(camera_.camera);
         if (Status s = apply(window); !s) return s;
         if (Status s = render(window.camera()); !s) return s;
@@ -230,16 +233,29 @@ class Session {
     return renderer_->set_plate(plates_->plate(), plate_white_cd_m2_.value_or(1));
   }
 
-  // Its main lights are looked for where the objects are.
-  Status show_field() {
+  // Its main lights are looked for where the objects are. A live field that the driver cannot hold is said, and passed by.
+  Status show_newest_field() {
+    if (source_.field_version() == shown_field_) return {};
+    shown_field_ = source_.field_version();
+    const auto start = Clock::now();
     const LightField& field = *source_.field();
     const Sphere& objects = renderer_->object_bounds();
     const Vec3d centre = objects.centre.cast<double>(),
                 reach = Vec3d::Constant(static_cast<double>(objects.radius));
     Status set = renderer_->set_field(
         field, find_main_lights(field, options_.field_shadows, centre - reach, centre + reach));
+    if (!set && options_.live_field && set.error().kind == ErrorKind::bad_input) {
+      if (set.error().message != said_unfit_) say("a light field is refused: " + set.error().message);
+      said_unfit_ = set.error().message;
+      return {};
+    }
     if (!set) return Error{set.error().kind, options_.field.string() + ": " + set.error().message};
-    shown_field_ = source_.field_version();
+    if (options_.live_field && field.grid != said_reach_of_) {
+      said_reach_of_ = field.grid;
+      if (const std::string remark = remark_on_reach(scene_, field, "the live field"); !remark.empty())
+        say(remark);
+    }
+    field_update_ms_.push_back(seconds_since(start) * 1e3);
     statistics_.field = field_statistics(*renderer_);
     return {};
   }
@@ -269,13 +285,12 @@ class Session {
       renderer_->set_environment(source_.environment());
       shown_environment_ = source_.environment_version();
     }
-    if (source_.field_version() != shown_field_)
-      if (Status s = show_field(); !s) return s;
+    if (Status s = show_newest_field(); !s) return s;
     Statistics::Frame times;
     const auto start = Clock::now();
     const double cpu_start = cpu_ms();
     // Frames of a sequence are 1/25 s apart, live ones as far as they are.
-    const double dt_s = options_.live ? seconds_since(last_frame_) : 0.04;
+    const double dt_s = options_.light_is_live() ? seconds_since(last_frame_) : 0.04;
     last_frame_ = start;
     const LightSet& lights = budget_.choose(source_.lights());
     if (budget_.lacks_prediction() && !said_no_prediction_) {
@@ -317,6 +332,7 @@ class Session {
   Status finish() {
     if (frame_ > 0)
       if (Status s = write(frame_ - 1, false); !s) return s;
+    if (statistics_.field) statistics_.field->update_ms = field_update_ms_;
     if (!options_.stats.empty()) return write_file_atomically(options_.stats, statistics_.json());
     return {};
   }
@@ -402,6 +418,9 @@ class Session {
   int frame_ = 0;
   int shown_environment_ = 0;
   int shown_field_ = 0;
+  std::vector<double> field_update_ms_;
+  std::string said_unfit_;
+  std::optional<FieldGrid> said_reach_of_;  // a live field's
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_frame_ = Clock::now();
 };

@@ -8,6 +8,7 @@
 
 #include "interface/light_set_io.h"
 #include "render/camera.h"
+#include "render/live_field_light.h"
 
 namespace lightwell::render {
 namespace {
@@ -74,6 +75,15 @@ float white_floor_cd_m2(const LightSet& lights) {
   return static_cast<float>(sum);
 }
 
+std::string remark_on_reach(const Scene& scene, const LightField& field, const std::string& name) {
+  if (scene.indices.empty()) return {};
+  const Bounds bounds = bounds_of(scene);
+  const Vec3d low = bounds.low.cast<double>(), high = bounds.high.cast<double>();
+  if (field.grid.contains(low) && field.grid.contains(high)) return {};
+  return name + " reaches over " + text_of(field.grid.low, field.grid.high) + " m, the scene over " +
+         text_of(low, high) + ": beyond the field the light at its border is taken";
+}
+
 std::vector<std::string> remarks_on(const Scene& scene, const ChosenCamera& camera, const LightSource& source,
                                     const Options& options) {
   std::vector<std::string> remarks;
@@ -85,14 +95,9 @@ std::vector<std::string> remarks_on(const Scene& scene, const ChosenCamera& came
   for (const std::string& remark : scene.remarks) remarks.push_back(file + ": " + remark);
   if (!camera.of_scene)
     remarks.push_back(file + " has no perspective camera; one that sees all of it is used");
-  if (const LightField* field = source.field(); field != nullptr && !scene.indices.empty()) {
-    const Bounds bounds = bounds_of(scene);
-    const Vec3d low = bounds.low.cast<double>(), high = bounds.high.cast<double>();
-    if (!field->grid.contains(low) || !field->grid.contains(high))
-      remarks.push_back(options.field.string() + " reaches over " +
-                        text_of(field->grid.low, field->grid.high) + " m, the scene over " +
-                        text_of(low, high) + ": beyond the field the light at its border is taken");
-  }
+  if (const LightField* field = source.field(); field != nullptr)
+    if (std::string remark = remark_on_reach(scene, *field, options.field.string()); !remark.empty())
+      remarks.push_back(std::move(remark));
   const LightSet& set = source.lights();
   if (!options.light_set.empty() && std::none_of(set.lights.begin(), set.lights.end(), has_power))
     remarks.push_back(
@@ -111,6 +116,7 @@ Result<std::unique_ptr<LightSource>> open_lights(const Options& options) {
     live.with_environment = options.background_environment || options.probe;
     return live_lights(live);
   }
+  if (options.live_field) return live_field_light({options.domain, options.interface});
   if (!options.field.empty()) return field_light(options.field);
   if (!options.environment.empty())
     return environment_lights({options.environment, options.lights, options.method, options.coverage,

@@ -31,6 +31,9 @@ float white_floor_cd_m2(const LightSet& lights);
 // The same at a place of a field, or the nearest to it in the field.
 float white_floor_cd_m2(const LightField& field, const Vec3d& place);
 
+// That the scene reaches beyond the field, where it does; else empty.
+std::string remark_on_reach(const Scene& scene, const LightField& field, const std::string& name);
+
 // What of the scene and its light is shown otherwise than one may expect, a line each.
 std::vector<std::string> remarks_on(const Scene& scene, const ChosenCamera& camera, const LightSource& source,
                                     const Options& options);

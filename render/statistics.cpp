@@ -10,15 +10,19 @@ namespace lightwell::render {
 namespace {
 
 // The smallest value that a share of all values does not exceed; null of none.
-template <class Get>
-nlohmann::json percentile(const std::vector<Statistics::Frame>& frames, double share, Get get) {
-  if (frames.empty()) return nullptr;
-  std::vector<double> values;
-  values.reserve(frames.size());
-  for (const auto& frame : frames) values.push_back(get(frame));
+nlohmann::json percentile(std::vector<double> values, double share) {
+  if (values.empty()) return nullptr;
   std::sort(values.begin(), values.end());
   const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
   return values[std::max<std::size_t>(rank, 1) - 1];
+}
+
+template <class Get>
+nlohmann::json percentile(const std::vector<Statistics::Frame>& frames, double share, Get get) {
+  std::vector<double> values;
+  values.reserve(frames.size());
+  for (const auto& frame : frames) values.push_back(get(frame));
+  return percentile(std::move(values), share);
 }
 
 }  // namespace
@@ -50,20 +54,29 @@ std::string Statistics::json() const {
                         {"shadow_texels", chosen->shadow_texels},
                         {"expected_error", chosen->expected_error}};
   if (field)
-    report["field"] = {{"size", field->size},
-                       {"degree", field->degree},
-                       {"main_lights", field->main_lights},
-                       {"texture_units", field->texture_units},
-                       {"bytes", field->bytes},
-                       {"balls", field->balls}};
+    report["field"] = {
+        {"size", field->size},
+        {"degree", field->degree},
+        {"main_lights", field->main_lights},
+        {"texture_units", field->texture_units},
+        {"bytes", field->bytes},
+        {"balls", field->balls},
+        {"updates", field->update_ms.size()},
+        {"update_ms",
+         {{"p50", percentile(field->update_ms, 0.5)}, {"p99", percentile(field->update_ms, 0.99)}}}};
   return report.dump(2) + "\n";
 }
 
 Statistics::Field field_statistics(const Renderer& renderer) {
   const FieldShading& field = *renderer.field();
   const FieldLayout& layout = field.layout();
-  return {layout.grid().size,    layout.degree(), field.main_lights().lights.size(),
-          field.texture_units(), layout.bytes(),  renderer.field_balls()};
+  return {layout.grid().size,
+          layout.degree(),
+          field.main_lights().lights.size(),
+          field.texture_units(),
+          layout.bytes(),
+          renderer.field_balls(),
+          {}};
 }
 
 }  // namespace lightwell::render

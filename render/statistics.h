@@ -40,6 +40,8 @@ struct Statistics {
     int texture_units = 0;  // that its shading binds
     std::size_t bytes = 0;  // of its textures
     std::size_t balls = 0;
+    // Fields that were shown, and how long each took: main lights and upload.
+    std::vector<double> update_ms;
   };
   std::optional<Field> field;
   std::string gl_renderer;

@@ -10,6 +10,7 @@
 #include "interface/field_file.h"
 #include "interface/light_set_io.h"
 #include "render/egl_context.h"
+#include "tests/integration/render/fake_field.h"
 #include "tests/integration/render/program.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_scene.h"
@@ -18,31 +19,15 @@ namespace lightwell {
 namespace {
 
 using test::ChildProcess;
+using test::stage_field;
 using test::start_render;
-
-// Even light of radiance 1, on a grid about the stage's middle, with a lamp from above.
-LightField even_field(float lamp_lux = 0) {
-  LightField field;
-  field.grid = {{3, 2, 3}, Vec3d(-1, 0, -1), Vec3d(1, 2, 1)};
-  field.degree = 2;
-  field.radiance.assign(field.grid.points() * 27, 0.0f);
-  field.confidence.assign(field.grid.points(), 1.0f);
-  double y[9];
-  harmonics(Vec3d(0.3, 0.9, 0.1).normalized(), 2, y);
-  for (int k = 0; k < 3; ++k)
-    for (int h = 0; h < 9; ++h)
-      for (int c = 0; c < 3; ++c)
-        std::fill_n(field.plane(k, h, c), 6,
-                    (h == 0 ? 3.5449077f : 0.0f) + lamp_lux * static_cast<float>(y[h]));
-  return field;
-}
 
 class FieldCommand : public ::testing::Test {
  protected:
   void SetUp() override {
     const auto context = render::EglContext::create();
     if (!context) GTEST_SKIP() << context.error().message;
-    ASSERT_TRUE(write_field(field_, even_field(), {}));
+    ASSERT_TRUE(write_field(field_, stage_field(1), {}));
   }
   [[nodiscard]] std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
   std::vector<std::string> arguments(std::vector<std::string> more) const {
@@ -104,7 +89,7 @@ TEST_F(FieldCommand, BallsStandAtGridPointsAndShowTheLight) {
 }
 
 TEST_F(FieldCommand, MainLightsCastShadowsAsManyAsAreAskedFor) {
-  ASSERT_TRUE(write_field(field_, even_field(20), {}));
+  ASSERT_TRUE(write_field(field_, stage_field(1, 20), {}));
   for (const char* count : {"0", "3"}) {
     ChildProcess program =
         start_render(folder_.path(), arguments({"--field-shadows", count, "--stats", file("stats.json")}));
