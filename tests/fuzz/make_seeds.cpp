@@ -96,6 +96,26 @@ void photometric(const std::filesystem::path& folder) {
   write(folder / "lamp.ldt", flood + "0\n90\n180\n270\n0\n90\n100\n50\n80\n40\n");
 }
 
+// The header of TM-25 and two rays.
+void rays(const std::filesystem::path& folder) {
+  std::string text = "TM25";
+  const auto put = [&](const auto& value) {
+    text.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  put(std::int32_t{2013});
+  put(std::int32_t{1});
+  put(100.0F);
+  put(2.0F);
+  put(std::uint64_t{2});
+  text.append(28 + 4 * 8 + 168, '\0');
+  for (const std::int32_t flag : {1, 1, 1, 0, 0, 0, 0, 0}) put(flag);
+  text.append(std::size_t{9} * 4000, '\0');
+  for (const float item :
+       {1.0F, 2.0F, 3.0F, 0.0F, 0.0F, 1.0F, 0.5F, 0.0F, 0.0F, 0.0F, 0.6F, 0.0F, 0.8F, 1.5F})
+    put(item);
+  write(folder / "lamp.tm25ray", text);
+}
+
 void imports(const std::filesystem::path& folder) {
   write(folder / "lens_import_opencv/a.yaml",
         "%YAML:1.0\n---\nimage_width: 848\nimage_height: 800\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   "
@@ -280,6 +300,7 @@ int main(int argc, char** argv) {
   corners(folder / "corners");
   patches(folder / "patches");
   photometric(folder / "photometric");
+  rays(folder / "ray_file");
   imports(folder);
   radiance(folder / "radiance_hdr");
   scenes(folder / "gltf");

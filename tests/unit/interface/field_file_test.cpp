@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <random>
 
 #include "interface/atomic_file.h"
 #include "lighting/field/field_sparsity.h"
@@ -129,6 +130,35 @@ TEST_F(FieldFileTest, RefusesWhatIsNoWholeFieldInOneLine) {
               testing::HasSubstr("lightwell_schema = lightwell.field/9: allowed lightwell.field/1"));
   EXPECT_FALSE(read_field(path("absent.vdb")));
   EXPECT_FALSE(read_field(folder_.path()));
+}
+
+// OpenVDB itself reads most of it, and an instrumented program cannot outlive the sizes that damage makes it ask for: so
+// here rather than under tests/fuzz.
+TEST_F(FieldFileTest, OutlivesDamageAnywhere) {
+  ASSERT_TRUE(write_field(path("f.vdb"), stage({5, 4, 3}, 1), {"best", 0.01}));
+  const std::string good = *read_text_file(path("f.vdb"));
+  std::mt19937 random(11);
+  int refused = 0;
+  constexpr int kTrials = 200;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::string damaged = good;
+    for (int flips = 1 + trial % 3; flips > 0; --flips)
+      damaged[random() % damaged.size()] = static_cast<char>(random() % 256);
+    if (trial % 4 == 0) damaged.resize(random() % damaged.size());
+    std::ofstream(path("d.vdb"), std::ios::binary) << damaged;
+    const auto field = read_field(path("d.vdb"));
+    if (!field) {
+      EXPECT_EQ(field.error().message.find('\n'), std::string::npos) << field.error().message;
+      ++refused;
+      continue;
+    }
+    ASSERT_EQ(field->field.confidence.size(), field->field.grid.points());
+    ASSERT_EQ(field->field.radiance.size(),
+              field->field.grid.points() * 3 * static_cast<std::size_t>(field->field.harmonics()));
+    for (const float value : field->field.radiance) ASSERT_TRUE(std::isfinite(value)) << trial;
+    for (const float value : field->field.confidence) ASSERT_TRUE(value >= 0 && value <= 1) << trial;
+  }
+  EXPECT_GT(refused, kTrials / 4);
 }
 
 }  // namespace
