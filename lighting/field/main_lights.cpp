@@ -27,11 +27,16 @@ Eigen::MatrixXd asked_points(const LightField& field, const Vec3d& low, const Ve
           inside.push_back(all.back());
       }
   const auto& asked = inside.empty() ? all : inside;
-  const std::size_t step = (asked.size() + kMostAsked - 1) / kMostAsked;
-  const auto count = static_cast<Eigen::Index>((asked.size() + step - 1) / step);
+  // Too many: by steps of the golden section, which no row or slab of the grid is in step with.
+  const auto count = static_cast<Eigen::Index>(std::min(asked.size(), kMostAsked));
+  const auto index_of = [&](Eigen::Index p) {
+    if (asked.size() <= kMostAsked) return static_cast<std::size_t>(p);
+    const double turn = 0.6180339887498949 * (static_cast<double>(p) + 0.5);
+    return static_cast<std::size_t>((turn - std::floor(turn)) * static_cast<double>(asked.size()));
+  };
   Eigen::MatrixXd points(field.harmonics(), count);
   for (Eigen::Index p = 0; p < count; ++p) {
-    const auto& [i, j, k] = asked[static_cast<std::size_t>(p) * step];
+    const auto& [i, j, k] = asked[index_of(p)];
     const auto at = static_cast<std::size_t>(j * grid.size[0] + i);
     for (int h = 0; h < field.harmonics(); ++h)
       points(h, p) = luminance(Rgbd(static_cast<double>(field.plane(k, h, 0)[at]),

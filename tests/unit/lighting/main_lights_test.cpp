@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -15,18 +16,19 @@ struct Lamp {
   std::function<Rgbd(const Vec3d&)> illuminance;
 };
 
-LightField field_of(const std::vector<Lamp>& lamps, const Rgbd& ambient, int degree = 4) {
+LightField field_of(const std::vector<Lamp>& lamps, const Rgbd& ambient, int degree = 4,
+                    std::array<int, 3> size = {5, 3, 6}) {
   LightField field;
-  field.grid = {{5, 3, 6}, Vec3d(-1, 0, -1), Vec3d(1, 1, 1)};
+  field.grid = {size, Vec3d(-1, 0, -1), Vec3d(1, 1, 1)};
   field.degree = degree;
   field.radiance.assign(field.grid.points() * 3 * static_cast<std::size_t>(field.harmonics()), 0.0f);
   field.confidence.assign(field.grid.points(), 1.0f);
   std::vector<double> y(static_cast<std::size_t>(field.harmonics()));
-  for (int k = 0; k < 6; ++k)
-    for (int j = 0; j < 3; ++j)
-      for (int i = 0; i < 5; ++i)
+  for (int k = 0; k < size[2]; ++k)
+    for (int j = 0; j < size[1]; ++j)
+      for (int i = 0; i < size[0]; ++i)
         for (int c = 0; c < 3; ++c) {
-          const auto at = static_cast<std::size_t>(j * 5 + i);
+          const auto at = static_cast<std::size_t>(j * size[0] + i);
           field.plane(k, 0, c)[at] += static_cast<float>(std::sqrt(4 * kPi) * ambient[c]);
           for (const Lamp& lamp : lamps) {
             harmonics(lamp.direction.normalized(), degree, y.data());
@@ -57,6 +59,15 @@ TEST(MainLights, ASpotAndItsPatternAreFound) {
         for (int c = 0; c < 3; ++c)
           EXPECT_NEAR(static_cast<double>(lights.plane(0, k, c, field.grid)[j * 5 + i]),
                       spot.illuminance(field.grid.position(i, j, k))[c], 0.02);
+}
+
+// Only some points of a large grid are asked: of every column, row and slab, whatever the grid's size.
+TEST(MainLights, ABeamIsFoundOnGridsOfEverySize) {
+  const Lamp beam{Vec3d(0.2, 0.9, 0.1),
+                  [](const Vec3d& p) { return Rgbd::Constant(std::abs(p.x()) < 0.6 ? 300.0 : 0.0); }};
+  for (const std::array<int, 3> size : {std::array{50, 8, 50}, std::array{50, 40, 10}, std::array{64, 4, 32},
+                                        std::array{20, 20, 20}, std::array{100, 2, 30}})
+    EXPECT_EQ(found(field_of({beam}, Rgbd::Ones(), 2, size), 1).directions.size(), 1u) << size[0];
 }
 
 TEST(MainLights, SeveralLightsAreToldApart) {
