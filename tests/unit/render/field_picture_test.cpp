@@ -220,7 +220,7 @@ TEST_F(FieldPicture, SamplesAreAveragedAndTheBackgroundStaysEmpty) {
 // The whole way from light that is known everywhere to a picture: two lamps above the unit cube, over a sphere in its middle,
 // every normal that a camera sees of it. The bands that irradiance leaves out are what is missing: 2.8 % with nine
 // coefficients alone.
-TEST_F(FieldPicture, DiffuseSurfacesUnderLampsAreWithinAPercentOfTheIntegral) {
+TEST_F(FieldPicture, DiffuseSurfacesUnderLampsAreAsCloseToTheIntegralAsTheDegreeAllows) {
   constexpr int kSide = 9, kDirections = 3072;
   const SpherePartition sphere(kDirections);
   Scene scene;
