@@ -12,6 +12,10 @@ namespace {
 constexpr int kFirstFieldUnit = 6;
 constexpr int kLobeUnit = kFirstFieldUnit + FieldLayout::kMostTextures;
 
+bool has_power(const DirectionalLight& light) {
+  return light.illuminance.maxCoeff() > 0;
+}
+
 LightSet light_set_of(const LightField& field, const MainLights& main) {
   LightSet set;
   for (std::size_t i = 0; i < main.directions.size(); ++i) {
@@ -43,7 +47,7 @@ FieldShading FieldShading::create(const MaterialKinds& kinds, bool nothing_casts
   return shading;
 }
 
-Status FieldShading::set(const LightField& field, MainLights lights) {
+Status FieldShading::set(const LightField& field, const MainLights& lights) {
   GLint side = 0;
   glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &side);
   auto layout =
@@ -74,6 +78,11 @@ Status FieldShading::make_if_missing(bool shadows) {
   return {};
 }
 
+std::size_t FieldShading::lights_with_power() const {
+  return static_cast<std::size_t>(
+      std::count_if(light_set_.lights.begin(), light_set_.lights.end(), has_power));
+}
+
 int FieldShading::texture_units() const {
   return kFirstFieldUnit + textures_.layout().textures() + (kinds_.lobes ? 1 : 0);
 }
@@ -86,10 +95,13 @@ void FieldShading::set_lights(std::span<const LightRow> lights, int shadow_page)
   // The atlas may have put them into another order, and turned them by part of a texel.
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const Eigen::Map<const Vec3f> direction(lights[i].to_light);
-    const auto nearest = std::max_element(light_set_.lights.begin(), light_set_.lights.end(),
-                                          [&](const auto& a, const auto& b) {
-                                            return direction.dot(a.direction) < direction.dot(b.direction);
-                                          });
+    // Those without power have no row, wherever they point.
+    const auto closeness = [&](const DirectionalLight& light) {
+      return has_power(light) ? direction.dot(light.direction) : -2;
+    };
+    const auto nearest =
+        std::max_element(light_set_.lights.begin(), light_set_.lights.end(),
+                         [&](const auto& a, const auto& b) { return closeness(a) < closeness(b); });
     main_light_[i] = static_cast<GLint>(nearest - light_set_.lights.begin());
   }
 }

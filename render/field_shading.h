@@ -23,12 +23,13 @@ class FieldShading {
                              const std::string& facts = "");
   // Another field; of the same grid and degree, with as many main lights, it costs only its upload.
   // bad_input: larger than the driver's 3D textures (FieldLayout)
-  Status set(const LightField& field, MainLights lights);
+  Status set(const LightField& field, const MainLights& lights);
   // For shade() with shadows = false.
   Status make_unshadowed() { return make_if_missing(false); }
 
   // The main lights as the shadow maps take them: each as strong as it is at its strongest.
   [[nodiscard]] const LightSet& main_lights() const { return light_set_; }
+  [[nodiscard]] std::size_t lights_with_power() const;
   // Those that shade() takes away where they are hidden, with their maps, all on one page of the atlas.
   void set_lights(std::span<const LightRow> lights, int shadow_page);
   void shade(bool shadows, const SurfaceShading::Sample& sample, const SurfaceShading::Target& target,

@@ -153,13 +153,13 @@ Status Renderer::set_shadows(bool on) {
   return field_ ? field_->make_unshadowed() : surfaces_.make_unshadowed();
 }
 
-Status Renderer::set_field(const LightField& field, MainLights main_lights) {
+Status Renderer::set_field(const LightField& field, const MainLights& main_lights) {
   if (field_) {
-    if (Status s = field_->set(field, std::move(main_lights)); !s) return s;
+    if (Status s = field_->set(field, main_lights); !s) return s;
   } else {
     auto shading =
         FieldShading::create(kinds_, nothing_casts_, {options_.simplify_casters, options_.soft_edges});
-    if (Status s = shading.set(field, std::move(main_lights)); !s) return s;
+    if (Status s = shading.set(field, main_lights); !s) return s;
     field_ = std::move(shading);
   }
   if (balls_) balls_->set_grid(field.grid);

@@ -66,7 +66,7 @@ class Renderer {
   Status set_plate(const Plate& plate, float white);
   // From now on render() takes this light field in place of its lights; its main lights cast shadows.
   // bad_input: larger than the driver's 3D textures
-  Status set_field(const LightField& field, MainLights main_lights);
+  Status set_field(const LightField& field, const MainLights& main_lights);
   // nullptr: none is set.
   [[nodiscard]] const FieldShading* field() const { return field_ ? &*field_ : nullptr; }
   // 0 before a field is set.

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "interface/atomic_file.h"
+#include "lighting/field/main_light_tracks.h"
 #include "render/egl_context.h"
 #include "render/gltf_scene.h"
 #include "render/kms_screen.h"
@@ -61,6 +62,7 @@ class Session {
         source_(source),
         plates_(plates),
         tracking_(tracking),
+        main_lights_(options.field_shadows),
         budget_({options.target_fps, options.max_error, options.shadow_size}),
         look_(options.look),
         show_probe_(options.probe),
@@ -242,8 +244,12 @@ class Session {
     const Sphere& objects = renderer_->object_bounds();
     const Vec3d centre = objects.centre.cast<double>(),
                 reach = Vec3d::Constant(static_cast<double>(objects.radius));
+    const double since_last_s = seconds_since(last_field_);
+    last_field_ = start;
     Status set = renderer_->set_field(
-        field, find_main_lights(field, options_.field_shadows, centre - reach, centre + reach));
+        field, options_.live_field
+                   ? main_lights_.update(field, since_last_s, centre - reach, centre + reach)
+                   : find_main_lights(field, options_.field_shadows, centre - reach, centre + reach));
     if (!set && options_.live_field && set.error().kind == ErrorKind::bad_input) {
       if (set.error().message != said_unfit_) say("a light field is refused: " + set.error().message);
       said_unfit_ = set.error().message;
@@ -309,8 +315,8 @@ class Session {
     times.cpu_ms = cpu_ms() - cpu_start;
     times.passes = renderer_->pass_times();
     if (!options_.stats.empty()) statistics_.frames.push_back(times);
-    statistics_.lights = renderer_->field() != nullptr ? renderer_->field()->main_lights().lights.size()
-                                                       : lights.lights.size();
+    statistics_.lights =
+        renderer_->field() != nullptr ? renderer_->field()->lights_with_power() : lights.lights.size();
     statistics_.predicted_error = lights.lights.empty() ? 0 : lights.lights.back().predicted_error;
     statistics_.shadow_maps = renderer_->shadow_maps();
     if (options_.target_fps) statistics_.chosen = {budget_.texels(), budget_.expected_error()};
@@ -408,6 +414,7 @@ class Session {
   TrackingStream* tracking_;
   std::optional<Renderer> renderer_;
   Statistics statistics_;
+  MainLightTracks main_lights_;  // a live field's
   LightBudget budget_;
   bool said_no_prediction_ = false;
   Look look_;
@@ -419,6 +426,7 @@ class Session {
   int shown_environment_ = 0;
   int shown_field_ = 0;
   std::vector<double> field_update_ms_;
+  Clock::time_point last_field_ = Clock::now();
   std::string said_unfit_;
   std::optional<FieldGrid> said_reach_of_;  // a live field's
   Clock::time_point start_ = Clock::now();

@@ -72,7 +72,7 @@ Statistics::Field field_statistics(const Renderer& renderer) {
   const FieldLayout& layout = field.layout();
   return {layout.grid().size,
           layout.degree(),
-          field.main_lights().lights.size(),
+          field.lights_with_power(),
           field.texture_units(),
           layout.bytes(),
           renderer.field_balls(),

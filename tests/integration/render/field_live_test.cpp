@@ -7,8 +7,10 @@
 
 #include "interface/atomic_file.h"
 #include "interface/environment_io.h"
+#include "interface/field_file.h"
 #include "render/egl_context.h"
 #include "tests/integration/render/fake_field.h"
+#include "tests/integration/render/fake_probe.h"
 #include "tests/integration/render/program.h"
 #include "tests/support/dds.h"
 #include "tests/support/eventually.h"
@@ -106,6 +108,66 @@ TEST_F(FieldLive, AnotherFieldTakesTheFirstOnesPlace) {
   program.send(SIGTERM);
   EXPECT_EQ(program.wait(), 0) << program.stderr_text();
   EXPECT_EQ(stats()["field"]["degree"], 1);
+}
+
+// Main lights fade in, so that no shadow pops; then the picture is that of the same field from a file.
+TEST_F(FieldLive, ShadowsOfALampThatComesEndAsThoseOfAFile) {
+  const LightField before = stage_field(1, 20, Vec3d(0.3, 0.9, 0.1), {3, 2, 3}, 4);
+  LightField both = before;
+  const LightField second = stage_field(0, 15, Vec3d(-1, 0.6, 0.4), {3, 2, 3}, 4);
+  for (std::size_t i = 0; i < both.radiance.size(); ++i) both.radiance[i] += second.radiance[i];
+  ChildProcess program = start_render(
+      folder_.path(),
+      arguments({"--out", file("f_%d.exr"), "--out", file("live.exr"), "--stats", file("stats.json")}));
+  FakeField publisher(dds_);
+  ASSERT_TRUE(eventually([&] { return publisher.send(before), pictures() > 0; })) << program.stderr_text();
+  // Half a second of fields and more: fades count the time between fields.
+  const auto start = std::chrono::steady_clock::now();
+  const int first = pictures();
+  ASSERT_TRUE(eventually([&] {
+    return publisher.send(both),
+           std::chrono::steady_clock::now() - start > std::chrono::seconds(2) && pictures() > first + 20;
+  })) << program.stderr_text();
+  program.send(SIGTERM);
+  ASSERT_EQ(program.wait(), 0) << program.stderr_text();
+  EXPECT_EQ(stats()["field"]["main_lights"], 2);
+  EXPECT_EQ(stats()["shadow_maps"], 2);
+
+  ASSERT_TRUE(write_field(file("both.vdb"), both, {}));
+  ChildProcess still =
+      start_render(folder_.path(), {"--scene", LIGHTWELL_STAGE, "--field", file("both.vdb"), "--headless",
+                                    "--size", "32x24", "--shadow-size", "32", "--out", file("still.exr")});
+  ASSERT_EQ(still.wait(), 0) << still.stderr_text();
+  const auto live_picture = read_environment(file("live.exr")),
+             still_picture = read_environment(file("still.exr"));
+  ASSERT_TRUE(live_picture.ok() && still_picture.ok());
+  double difference = 0, sum = 0;
+  for (std::size_t i = 0; i < live_picture->image.pixels.size(); ++i) {
+    const double a = static_cast<double>(live_picture->image.pixels[i][0]);
+    const double b = static_cast<double>(still_picture->image.pixels[i][0]);
+    difference += std::abs(a - b);
+    sum += b;
+  }
+  // Lights hold within .3 degrees, a few pixels of edges.
+  EXPECT_LT(difference, 0.01 * sum);
+}
+
+// The same over the real program: one probe under an even sky gives its light everywhere.
+TEST_F(FieldLive, RendersTheFieldThatTheCommandMakes) {
+  test::FakeProbe probe(dds_);
+  ChildProcess command(
+      {LIGHTWELL_BIN_DIR "/lightwell", "field", "live", "--domain", std::to_string(dds_.domain), "--probe",
+       "fake=0,0,0", "--bounds", "-1,0,-1,1,2,1", "--grid", "4,4,4"},
+      folder_.path() / "field.log");
+  ChildProcess program = start_render(folder_.path(), arguments({"--out", file("f_%d.exr")}));
+  ASSERT_TRUE(eventually([&] { return pictures() > 3; })) << program.stderr_text() << command.stderr_text();
+  program.send(SIGTERM);
+  EXPECT_EQ(program.wait(), 0) << program.stderr_text();
+  EXPECT_EQ(lines_with(program, "field light from 'stage'"), 1u) << program.stderr_text();
+  // What degree 4 leaves out of a hemisphere's irradiance.
+  EXPECT_NEAR(ground("f_2.exr"), test::FakeProbe::kSky, 0.02 * test::FakeProbe::kSky);
+  command.send(SIGINT);
+  EXPECT_EQ(command.wait_for_end(), 0) << command.stderr_text();
 }
 
 TEST_F(FieldLive, KeepsTheLastFieldWhenItStopsAndGoesOnWhenItReturns) {
