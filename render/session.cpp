@@ -11,7 +11,6 @@
 #include <optional>
 
 #include "interface/atomic_file.h"
-#include "lighting/field/main_light_tracks.h"
 #include "render/egl_context.h"
 #include "render/gltf_scene.h"
 #include "render/kms_screen.h"
@@ -26,6 +25,7 @@
 #include "render/screenshot.h"
 #include "render/session_inputs.h"
 #include "render/session_text.h"
+#include "render/shown_field.h"
 #include "render/statistics.h"
 #include "render/tracked_camera.h"
 #include "render/window.h"
@@ -62,7 +62,7 @@ class Session {
         source_(source),
         plates_(plates),
         tracking_(tracking),
-        main_lights_(options.field_shadows),
+        shown_field_(options),
         budget_({options.target_fps, options.max_error, options.shadow_size}),
         look_(options.look),
         show_probe_(options.probe),
@@ -235,34 +235,10 @@ class Session {
     return renderer_->set_plate(plates_->plate(), plate_white_cd_m2_.value_or(1));
   }
 
-  // Its main lights are looked for where the objects are. A live field that the driver cannot hold is said, and passed by.
   Status show_newest_field() {
-    if (source_.field_version() == shown_field_) return {};
-    shown_field_ = source_.field_version();
-    const auto start = Clock::now();
-    const LightField& field = *source_.field();
-    const Sphere& objects = renderer_->object_bounds();
-    const Vec3d centre = objects.centre.cast<double>(),
-                reach = Vec3d::Constant(static_cast<double>(objects.radius));
-    const double since_last_s = seconds_since(last_field_);
-    last_field_ = start;
-    Status set = renderer_->set_field(
-        field, options_.live_field
-                   ? main_lights_.update(field, since_last_s, centre - reach, centre + reach)
-                   : find_main_lights(field, options_.field_shadows, centre - reach, centre + reach));
-    if (!set && options_.live_field && set.error().kind == ErrorKind::bad_input) {
-      if (set.error().message != said_unfit_) say("a light field is refused: " + set.error().message);
-      said_unfit_ = set.error().message;
-      return {};
-    }
-    if (!set) return Error{set.error().kind, options_.field.string() + ": " + set.error().message};
-    if (options_.live_field && field.grid != said_reach_of_) {
-      said_reach_of_ = field.grid;
-      if (const std::string remark = remark_on_reach(scene_, field, "the live field"); !remark.empty())
-        say(remark);
-    }
-    field_update_ms_.push_back(seconds_since(start) * 1e3);
-    statistics_.field = field_statistics(*renderer_);
+    const auto another = shown_field_.update(source_, scene_, *renderer_);
+    if (!another) return another.error();
+    if (*another) statistics_.field = field_statistics(*renderer_);
     return {};
   }
 
@@ -338,7 +314,7 @@ class Session {
   Status finish() {
     if (frame_ > 0)
       if (Status s = write(frame_ - 1, false); !s) return s;
-    if (statistics_.field) statistics_.field->update_ms = field_update_ms_;
+    if (statistics_.field) statistics_.field->update_ms = shown_field_.update_ms();
     if (!options_.stats.empty()) return write_file_atomically(options_.stats, statistics_.json());
     return {};
   }
@@ -414,7 +390,7 @@ class Session {
   TrackingStream* tracking_;
   std::optional<Renderer> renderer_;
   Statistics statistics_;
-  MainLightTracks main_lights_;  // a live field's
+  ShownField shown_field_;
   LightBudget budget_;
   bool said_no_prediction_ = false;
   Look look_;
@@ -424,11 +400,6 @@ class Session {
   double last_ms_ = 0;
   int frame_ = 0;
   int shown_environment_ = 0;
-  int shown_field_ = 0;
-  std::vector<double> field_update_ms_;
-  Clock::time_point last_field_ = Clock::now();
-  std::string said_unfit_;
-  std::optional<FieldGrid> said_reach_of_;  // a live field's
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_frame_ = Clock::now();
 };

@@ -17,12 +17,12 @@ class MainLightTracks {
  public:
   explicit MainLightTracks(int count);  // 0 to kMostMainLights
 
-  // The lights of the newest field, which may have another grid and degree. dt_s: since the one before. low, high: as of
-  // find_main_lights(), which the first one's are; none appears or goes before they fade. Valid until the next call.
+  // The lights of the newest field, which may have another grid and degree. Those of the first one that has light are
+  // find_main_lights(). dt_s: since the one before; low, high: as there. Valid until the next call.
   const MainLights& update(const LightField& field, double dt_s, const Vec3d& low, const Vec3d& high);
 
   static constexpr double kFade_s = 0.5;
-  // By how much less than the wanted a light may differ in direction and hold: a quarter of a texel is some .1 degrees.
+  // What is shown holds while the light is within this of it.
   static constexpr double kHold_rad = 0.005;
   // 0 to 1, one a light.
   [[nodiscard]] const std::vector<double>& weights() const { return weights_; }
