@@ -118,15 +118,92 @@ void LampFinder::update_peaks(const Vec3f& centre, double radius_rad) {
   }
 }
 
-void LampFinder::find(const PolarMap& map, std::vector<LampSighting>& lamps) {
-  lamps.clear();
+// Luminance of all bins; returns what the map sends, lux of luminance.
+double LampFinder::load(const PolarMap& map) {
   const auto sectors = static_cast<std::size_t>(cells_.grid().sectors);
-  double total = 0;  // lux, luminance
+  double total = 0;
   for (std::size_t bin = 0; bin < luminance_.size(); ++bin) {
     const Rgb value = map.rgb(bin).max(0.0f);
     luminance_[bin] = (value - value).sum() == 0 ? luminance(value) : kTaken;
     if (luminance_[bin] > 0) total += static_cast<double>(luminance_[bin] * ring_solid_angle_[bin / sectors]);
   }
+  return total;
+}
+
+// Widens a circle around a peak until the light beyond it no longer falls.
+LampFinder::Circle LampFinder::circle_around(const Vec3f& centre, double peak) {
+  Circle circle{kFirstRadius, 0, false};
+  const auto luminance_beyond = [&](double radius_rad) {
+    collect(centre, radius_rad, radius_rad * kGrowth + kDegree, ring_);
+    return surroundings(ring_);
+  };
+  circle.around = luminance_beyond(circle.radius_rad);
+  while (circle.radius_rad * kGrowth <= kLastRadius) {
+    const double next = luminance_beyond(circle.radius_rad * kGrowth);
+    circle.ends = next >= kStillFalling * circle.around && circle.around * kContrast < peak;
+    if (circle.ends) break;
+    circle.around = next;
+    circle.radius_rad *= kGrowth;
+  }
+  return circle;
+}
+
+// Colour of the surroundings: the mean of the darker part of the ring.
+Rgb LampFinder::background(const PolarMap& map, double around) const {
+  Rgb sum = Rgb::Zero();
+  int counted = 0;
+  for (const std::uint32_t bin : ring_)
+    if (static_cast<double>(luminance_[bin]) <= around) {
+      sum += map.rgb(bin).max(0.0f);
+      ++counted;
+    }
+  return sum / static_cast<float>(std::max(counted, 1));
+}
+
+// What stands above the background in the aperture; returns its lux of luminance.
+double LampFinder::measure(const PolarMap& map, const Rgb& background, LampSighting& lamp) const {
+  const auto sectors = static_cast<std::size_t>(cells_.grid().sectors);
+  Vec3d moment = Vec3d::Zero();
+  double weight = 0;
+  std::array<double, harmonic_count(kRadianceDegree)> y;
+  for (const std::uint32_t bin : aperture_) {
+    const Rgb lux = (map.rgb(bin) - background).max(0.0f) * ring_solid_angle_[bin / sectors];
+    const auto light = static_cast<double>(luminance(lux));
+    if (!(light > 0)) continue;
+    const Vec3d direction = directions_[bin].cast<double>();
+    moment += light * direction;
+    weight += light;
+    lamp.illuminance += lux.cast<double>();
+    harmonics(direction, kRadianceDegree, y.data());
+    for (std::size_t h = 0; h < y.size(); ++h)
+      lamp.harmonics.row(static_cast<Eigen::Index>(h)) += y[h] * lux.cast<double>().transpose();
+    const std::uint32_t cell = cells_.cell_of(bin);
+    auto share =
+        std::find_if(lamp.shares.begin(), lamp.shares.end(), [&](const auto& s) { return s.cell == cell; });
+    if (share == lamp.shares.end()) share = lamp.shares.insert(share, {cell, Rgb::Zero()});
+    share->radiance += lux / cells_.solid_angle_sr()[cell];
+  }
+  if (!(weight > 0)) return 0;
+  // |mean direction| = 1 − ⟨θ²⟩ / 2, and ⟨θ²⟩ = α² / 2 over an even disc.
+  lamp.angular_radius_rad = 2 * std::sqrt(std::max(0.0, 1 - moment.norm() / weight));
+  lamp.direction = moment.normalized();
+  return weight;
+}
+
+// Nothing in the circle or the aperture is looked at again.
+void LampFinder::take(const Vec3f& centre, double radius_rad) {
+  for (const std::uint32_t bin : aperture_) luminance_[bin] = kTaken;
+  collect(centre, 0, radius_rad, ring_);
+  for (const std::uint32_t bin : ring_) luminance_[bin] = kTaken;
+  double reach = radius_rad;
+  for (const std::uint32_t bin : aperture_)
+    reach = std::max(reach, std::acos(std::min(1.0, static_cast<double>(directions_[bin].dot(centre)))));
+  update_peaks(centre, reach);
+}
+
+void LampFinder::find(const PolarMap& map, std::vector<LampSighting>& lamps) {
+  lamps.clear();
+  const double total = load(map);
   update_peaks(Vec3f::UnitY(), 2 * kPi);
   const double darkest = dark_level();
   for (std::size_t tries = 0; tries < 2 * kMostLamps && lamps.size() < kMostLamps; ++tries) {
@@ -138,67 +215,14 @@ void LampFinder::find(const PolarMap& map, std::vector<LampSighting>& lamps) {
     if (!(brightest * 2 * kPi > total * kLeastShare) || brightest <= kContrast * darkest) break;
     const Vec3f centre = directions_[peak];
     aperture_.clear();
-    double radius = kFirstRadius;
+    const auto [radius, around, ends] = circle_around(centre, brightest);
     collect(centre, radius, radius * kGrowth + kDegree, ring_);
-    double around = surroundings(ring_);
-    bool ends = false;
-    while (!ends && radius * kGrowth <= kLastRadius) {
-      collect(centre, radius * kGrowth, radius * kGrowth * kGrowth + kDegree, ring_);
-      const double next = surroundings(ring_);
-      ends = next >= kStillFalling * around && around * kContrast < brightest;
-      if (ends) break;
-      around = next;
-      radius *= kGrowth;
-    }
-    collect(centre, radius, radius * kGrowth + kDegree, ring_);
-    if (ends) ends = flood(peak, static_cast<float>(around + kEdge * (brightest - around)), centre);
-    if (ends && !ring_.empty()) {
-      // Colour of the surroundings: the mean of the darker part of the ring.
-      Rgb background = Rgb::Zero();
-      int counted = 0;
-      for (const std::uint32_t bin : ring_)
-        if (static_cast<double>(luminance_[bin]) <= around) {
-          background += map.rgb(bin).max(0.0f);
-          ++counted;
-        }
-      background /= static_cast<float>(std::max(counted, 1));
+    const auto least = static_cast<float>(around + kEdge * (brightest - around));
+    if (ends && flood(peak, least, centre) && !ring_.empty()) {
       LampSighting lamp;
-      Vec3d moment = Vec3d::Zero();
-      double weight = 0;
-      std::array<double, harmonic_count(kRadianceDegree)> y;
-      for (const std::uint32_t bin : aperture_) {
-        const float solid_angle = ring_solid_angle_[bin / sectors];
-        const Rgb excess = (map.rgb(bin) - background).max(0.0f);
-        const Rgb lux = excess * solid_angle;
-        const auto light = static_cast<double>(luminance(lux));
-        if (!(light > 0)) continue;
-        const Vec3d direction = directions_[bin].cast<double>();
-        moment += light * direction;
-        weight += light;
-        lamp.illuminance += lux.cast<double>();
-        harmonics(direction, kRadianceDegree, y.data());
-        for (std::size_t h = 0; h < y.size(); ++h)
-          lamp.harmonics.row(static_cast<Eigen::Index>(h)) += y[h] * lux.cast<double>().transpose();
-        const std::uint32_t cell = cells_.cell_of(bin);
-        auto share = std::find_if(lamp.shares.begin(), lamp.shares.end(),
-                                  [&](const auto& s) { return s.cell == cell; });
-        if (share == lamp.shares.end()) share = lamp.shares.insert(share, {cell, Rgb::Zero()});
-        share->radiance += lux / cells_.solid_angle_sr()[cell];
-      }
-      if (weight > kLeastShare * total && weight > 0) {
-        // |mean direction| = 1 − ⟨θ²⟩ / 2, and ⟨θ²⟩ = α² / 2 over an even disc.
-        lamp.angular_radius_rad = 2 * std::sqrt(std::max(0.0, 1 - moment.norm() / weight));
-        lamp.direction = moment.normalized();
-        lamps.push_back(std::move(lamp));
-      }
+      if (measure(map, background(map, around), lamp) > kLeastShare * total) lamps.push_back(std::move(lamp));
     }
-    for (const std::uint32_t bin : aperture_) luminance_[bin] = kTaken;
-    collect(centre, 0, radius, ring_);
-    for (const std::uint32_t bin : ring_) luminance_[bin] = kTaken;
-    double reach = radius;
-    for (const std::uint32_t bin : aperture_)
-      reach = std::max(reach, std::acos(std::min(1.0, static_cast<double>(directions_[bin].dot(centre)))));
-    update_peaks(centre, reach);
+    take(centre, radius);
   }
 }
 

@@ -38,6 +38,16 @@ class LampFinder {
   void find(const PolarMap& map, std::vector<LampSighting>& lamps);
 
  private:
+  struct Circle {
+    double radius_rad;
+    double around;  // median luminance beyond it
+    bool ends;      // the lamp: it stands out of its surroundings, which fall no more
+  };
+  double load(const PolarMap& map);
+  Circle circle_around(const Vec3f& centre, double peak);
+  [[nodiscard]] Rgb background(const PolarMap& map, double around) const;
+  double measure(const PolarMap& map, const Rgb& background, LampSighting& lamp) const;
+  void take(const Vec3f& centre, double radius_rad);
   void collect(const Vec3f& centre, double inner_rad, double outer_rad,
                std::vector<std::uint32_t>& bins) const;
   bool flood(std::uint32_t peak, float least, const Vec3f& centre);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace lightwell {
 namespace {
@@ -48,6 +49,10 @@ double intensity_of(const ProbeSightings& probe, int sighting, const Vec3d& plac
          (place - probe.position).squaredNorm();
 }
 
+SightRay sight_ray(const ProbeSightings& probe, int sighting) {
+  return {probe.position, probe.lamps[static_cast<std::size_t>(sighting)].direction};
+}
+
 // Certainty: the position's deviation over the distance to the nearest probe that sees the lamp.
 double relative_sigma(const LampPlace& place, std::span<const SightRay> rays) {
   double nearest_m = std::numeric_limits<double>::max();
@@ -76,8 +81,7 @@ bool LampTracks::follow(LampTrack& track, std::span<const ProbeSightings> probes
     const bool shared = std::any_of(tracks_.begin(), tracks_.end(), [&](const LampTrack& other) {
       return other.id != track.id && other.links[n].sighting == sighting;
     });
-    if (!shared)
-      rays.push_back({probes[n].position, probes[n].lamps[static_cast<std::size_t>(sighting)].direction});
+    if (!shared) rays.push_back(sight_ray(probes[n], sighting));
   }
   const double change = elapsed_s / kFade_s;
   const auto place = triangulate(rays, track.position);
@@ -89,76 +93,93 @@ bool LampTracks::follow(LampTrack& track, std::span<const ProbeSightings> probes
   return true;
 }
 
-// Rays that no lamp claims, tried in pairs.
-void LampTracks::find_new(std::span<const ProbeSightings> probes) {
-  struct Free {
-    std::size_t probe;
-    int sighting;
-  };
-  std::vector<Free> free;
-  for (std::size_t n = 0; n < probes.size(); ++n) {
-    std::size_t taken = 0;
-    for (std::size_t i = 0; probes[n].present && i < probes[n].lamps.size() && taken < kTriedAProbe; ++i) {
+// Rays that no lamp claims: [probes], the brightest kTriedAProbe of each.
+std::vector<LampTracks::FreeRays> LampTracks::free_rays(std::span<const ProbeSightings> probes) const {
+  std::vector<FreeRays> free(probes.size());
+  for (std::size_t n = 0; n < probes.size(); ++n)
+    for (std::size_t i = 0; probes[n].present && i < probes[n].lamps.size(); ++i) {
       const bool claimed = std::any_of(tracks_.begin(), tracks_.end(), [&](const LampTrack& track) {
         return track.links[n].sighting == static_cast<int>(i);
       });
-      if (claimed) continue;
-      free.push_back({n, static_cast<int>(i)});
-      ++taken;
+      if (!claimed && free[n].size() < kTriedAProbe) free[n].push_back(static_cast<int>(i));
+    }
+  return free;
+}
+
+// What all probes say to a lamp at a place that two rays gave; none where too few confirm it.
+std::optional<LampTracks::Votes> LampTracks::vote(std::span<const ProbeSightings> probes,
+                                                  std::span<const FreeRays> free, const Vec3d& guess) {
+  Votes votes;
+  votes.sightings.assign(probes.size(), -1);
+  double least = std::numeric_limits<double>::max(), most = 0;
+  for (std::size_t n = 0; n < probes.size(); ++n) {
+    const Vec3d toward = (guess - probes[n].position).normalized();
+    double nearest_cosine = std::cos(kGate);
+    for (const int i : free[n])
+      if (const double cosine = toward.dot(probes[n].lamps[static_cast<std::size_t>(i)].direction);
+          cosine > nearest_cosine) {
+        nearest_cosine = cosine;
+        votes.sightings[n] = i;
+      }
+    if (const int found = votes.sightings[n]; found >= 0) {
+      votes.rays.push_back(sight_ray(probes[n], found));
+      least = std::min(least, intensity_of(probes[n], found, guess));
+      most = std::max(most, intensity_of(probes[n], found, guess));
+    } else if (looks_at(probes[n], guess)) {
+      ++votes.denied;
     }
   }
-  const auto ray_of = [&](const Free& f) {
-    return SightRay{probes[f.probe].position,
-                    probes[f.probe].lamps[static_cast<std::size_t>(f.sighting)].direction};
+  const std::size_t count = votes.rays.size();
+  if (count < 2 || (count < 3 && (votes.denied > 0 || most > kPairFactor * least))) return std::nullopt;
+  return votes;
+}
+
+// The lamp that most rays confirm, of all that two rays give; none where there is no certain one. Most pairs of 64 probes'
+// rays pass far from each other, and most places that are left lose by their votes alone, so few are triangulated.
+std::optional<LampTrack> LampTracks::best_lamp(std::span<const ProbeSightings> probes,
+                                               std::span<const FreeRays> free) const {
+  std::optional<LampTrack> best;
+  double best_score = 1;
+  std::set<std::vector<int>> tried;  // by their sightings: many pairs of rays give the same lamp
+  const auto try_pair = [&](const SightRay& a, const SightRay& b) {
+    const auto guess = meeting_point(a, b, 2 * kLeastDistance_m);
+    if (!guess || agreement(*guess, a.origin, a.direction) <= std::cos(kGate) ||
+        agreement(*guess, b.origin, b.direction) <= std::cos(kGate))
+      return;
+    auto votes = vote(probes, free, *guess);
+    // A probe who looks there and sees nothing counts half: something may stand between.
+    if (!votes || votes->score() <= best_score || !tried.insert(votes->sightings).second) return;
+    const auto place = triangulate(votes->rays, *guess);
+    if (!place || place->residual_rad > kGate / 2 || relative_sigma(*place, votes->rays) > kEnterSigma)
+      return;
+    const double score = votes->score() - place->residual_rad / kGate;
+    if (score <= best_score) return;
+    best_score = score;
+    best.emplace();
+    best->position = place->position;
+    best->sigma_m = place->sigma_m;
+    best->links.resize(probes.size());
+    for (std::size_t n = 0; n < probes.size(); ++n) best->links[n].sighting = votes->sightings[n];
   };
-  for (;;) {
-    LampTrack best;
-    double best_score = 0;
-    for (std::size_t a = 0; a < free.size(); ++a)
-      for (std::size_t b = a + 1; b < free.size(); ++b) {
-        if (free[a].probe == free[b].probe) continue;
-        const auto guess = meeting_point(ray_of(free[a]), ray_of(free[b]), 2 * kLeastDistance_m);
-        if (!guess) continue;
-        std::vector<SightRay> rays;
-        double denied = 0, least = std::numeric_limits<double>::max(), most = 0;
-        std::vector<LampTrack::Link> links(probes.size());
-        for (std::size_t n = 0; n < probes.size(); ++n) {
-          int found = -1;
-          double nearest_cosine = std::cos(kGate);
-          for (const Free& f : free)
-            if (f.probe == n)
-              if (const double cosine = agreement(*guess, probes[n].position, ray_of(f).direction);
-                  cosine > nearest_cosine) {
-                nearest_cosine = cosine;
-                found = f.sighting;
-              }
-          links[n].sighting = found;
-          if (found >= 0) {
-            rays.push_back(ray_of({n, found}));
-            least = std::min(least, intensity_of(probes[n], found, *guess));
-            most = std::max(most, intensity_of(probes[n], found, *guess));
-          } else if (looks_at(probes[n], *guess)) {
-            ++denied;
-          }
-        }
-        const auto votes = static_cast<double>(rays.size());
-        if (votes < 2 || (votes < 3 && (denied > 0 || most > kPairFactor * least))) continue;
-        const auto place = triangulate(rays, *guess);
-        if (!place || place->residual_rad > kGate / 2 || relative_sigma(*place, rays) > kEnterSigma) continue;
-        // A probe who looks there and sees nothing counts half: something may stand between.
-        const double score = votes - denied / 2 - place->residual_rad / kGate;
-        if (score <= std::max(best_score, 1.0)) continue;
-        best_score = score;
-        best.position = place->position;
-        best.sigma_m = place->sigma_m;
-        best.links = std::move(links);
+  const std::size_t turns = first_ ? 1 : (probes.size() + kPairedAtOnce - 1) / kPairedAtOnce;
+  for (std::size_t p = 0; p < probes.size(); ++p)
+    for (const int i : free[p])
+      for (std::size_t q = p + 1; q < probes.size(); ++q) {
+        if ((p + q) % turns != turn_ % turns) continue;
+        for (const int j : free[q]) try_pair(sight_ray(probes[p], i), sight_ray(probes[q], j));
       }
-    if (!(best_score > 0)) return;
-    best.id = next_id_++;
-    best.weight = first_ ? 1 : 0;
-    std::erase_if(free, [&](const Free& f) { return best.links[f.probe].sighting == f.sighting; });
-    tracks_.push_back(std::move(best));
+  return best;
+}
+
+void LampTracks::find_new(std::span<const ProbeSightings> probes) {
+  std::vector<FreeRays> free = free_rays(probes);
+  while (auto found = best_lamp(probes, free)) {
+    found->id = next_id_++;
+    found->weight = first_ ? 1 : 0;
+    for (std::size_t n = 0; n < probes.size(); ++n) std::erase(free[n], found->links[n].sighting);
+    tracks_.push_back(std::move(*found));
   }
+  ++turn_;
 }
 
 // What each probe measured of each lamp. Of a sighting that two lamps claim each has what its mean intensity foretells.

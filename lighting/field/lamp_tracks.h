@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,11 +39,12 @@ struct LampTrack {
 
 // Follows lamps that several probes see. Every ray of a known lamp is looked for where the lamp stood; rays that are left
 // over are tried in pairs, and the place that most other probes confirm, and that none who looks there denies, becomes a
-// lamp. A lamp gains and loses its weight over kFade_s, and needs less certainty to stay than to begin, so that a doubtful
+// lamp. Of more than kPairedAtOnce probes each update but the first tries a part of the pairs, all of them in turn. A lamp gains and loses its weight over kFade_s, and needs less certainty to stay than to begin, so that a doubtful
 // one does not flicker.
 class LampTracks {
  public:
   static constexpr double kFade_s = 0.3;
+  static constexpr std::size_t kPairedAtOnce = 16;  // of 64 probes all pairs are tried in four updates
   static constexpr double kEnterSigma = 0.15,
                           kLeaveSigma = 0.3;  // of the distance to the nearest probe that sees it
 
@@ -53,11 +55,25 @@ class LampTracks {
  private:
   void link(LampTrack& track, std::span<const ProbeSightings> probes);
   bool follow(LampTrack& track, std::span<const ProbeSightings> probes, double elapsed_s);
+  using FreeRays = std::vector<int>;  // sightings of a probe
+  struct Votes {
+    std::vector<int> sightings;  // [probes], −1: none
+    std::vector<SightRay> rays;  // of those who see it
+    double denied = 0;           // probes who look there and see nothing
+
+    [[nodiscard]] double score() const { return static_cast<double>(rays.size()) - denied / 2; }
+  };
+  [[nodiscard]] std::vector<FreeRays> free_rays(std::span<const ProbeSightings> probes) const;
+  static std::optional<Votes> vote(std::span<const ProbeSightings> probes, std::span<const FreeRays> free,
+                                   const Vec3d& guess);
+  [[nodiscard]] std::optional<LampTrack> best_lamp(std::span<const ProbeSightings> probes,
+                                                   std::span<const FreeRays> free) const;
   void find_new(std::span<const ProbeSightings> probes);
   void share_out(std::span<const ProbeSightings> probes);
   std::vector<LampTrack> tracks_;
   std::uint32_t next_id_ = 1;
   bool first_ = true;
+  std::size_t turn_ = 0;  // of the pairs of probes
 };
 
 }  // namespace lightwell

@@ -62,7 +62,7 @@ struct LiveField::Direction {
   std::optional<Kriging> kriging;
   ShearPlane plane;
   std::vector<std::uint64_t> near;  // [pixels], a bit for each probe whose ray passes within kNearCells
-  Eigen::VectorXd weights;          // [probes], for which `completion` is made
+  Eigen::VectorXd shares;           // [probes], 0 where it was not measured; `completion` is made for them
   Eigen::MatrixXd completion;
 };
 
@@ -72,6 +72,7 @@ LiveField::LiveField(const LiveFieldOptions& options, std::vector<Vec3d> positio
       partition_(options.cells),
       probes_(positions_.size()),
       weights_(positions_.size(), 0.0),
+      shares_(positions_.size(), 0.0),
       places_(columns(positions_)) {
   verify_bug(!positions_.empty() && positions_.size() <= kMostProbes, "a live field has 1 to 64 probes");
   const auto count = static_cast<Eigen::Index>(positions_.size());
@@ -145,20 +146,27 @@ void LiveField::update(std::size_t index, const PolarMap& map, double time_s) {
   probe.time_s = time_s;
 }
 
-// Weights move toward 1 while maps are new and toward 0 while they are not.
+// Weights move toward 1 while maps are new and toward 0 while they are not. So do shares, unless no map is new: then the mix
+// stays as it is, and whoever is back first takes over from the last light as slowly as from any probe.
 void LiveField::age(double time_s) {
   const double step = last_s_ ? std::max(0.0, time_s - *last_s_) / std::max(options_.fade_s, 1e-3) : 1;
-  const bool silent = *std::max_element(weights_.begin(), weights_.end()) == 0;
-  for (std::size_t n = 0; n < weights_.size(); ++n) {
-    const bool fresh = probes_[n].time_s && time_s - *probes_[n].time_s <= options_.hold_s;
-    const double most = fresh && silent ? 1 : step;  // the first are not waited for
-    weights_[n] = std::clamp(fresh ? weights_[n] + most : weights_[n] - step, 0.0, 1.0);
-    if (!probes_[n].time_s) weights_[n] = 0;
-  }
+  const auto fresh = [&](const Probe& probe) {
+    return probe.time_s && time_s - *probe.time_s <= options_.hold_s;
+  };
+  const auto move = [&](std::vector<double>& parts) {
+    const bool none = *std::max_element(parts.begin(), parts.end()) == 0;
+    for (std::size_t n = 0; n < parts.size(); ++n) {
+      const double rise = none ? 1 : step;  // the first are not waited for
+      parts[n] = std::clamp(parts[n] + (fresh(probes_[n]) ? rise : -step), 0.0, 1.0);
+    }
+  };
+  move(weights_);
+  if (std::any_of(probes_.begin(), probes_.end(), fresh)) move(shares_);
 }
 
 const LightField& LiveField::make(double time_s) {
   const double elapsed_s = last_s_ ? std::max(0.0, time_s - *last_s_) : 0;
+  const std::vector<double> before = weights_;
   age(time_s);
   last_s_ = time_s;
   if (!sums_) return field_;  // no map yet: dark, confidence 0
@@ -168,7 +176,7 @@ const LightField& LiveField::make(double time_s) {
   }
   std::vector<ProbeSightings> sightings(probes_.size());
   for (std::size_t n = 0; n < probes_.size(); ++n)
-    sightings[n] = {positions_[n], weights_[n] > 0,
+    sightings[n] = {positions_[n], shares_[n] > 0,
                     probes_[n].cells ? probes_[n].cells->grid().theta_max_rad : 0.0, probes_[n].lamps};
   tracks_.update(sightings, elapsed_s);
 
@@ -197,7 +205,7 @@ const LightField& LiveField::make(double time_s) {
                             .array();
   }
   const auto count = static_cast<Eigen::Index>(probes_.size());
-  Eigen::VectorXd weights(count);
+  Eigen::VectorXd shares(count);
   Eigen::MatrixXd values(count, 3);
   bool changed = false;
   for (std::size_t d = 0; d < directions_.size(); ++d) {
@@ -205,12 +213,14 @@ const LightField& LiveField::make(double time_s) {
     for (std::size_t n = 0; n < probes_.size(); ++n) {
       const auto row = static_cast<Eigen::Index>(n);
       const bool measured = probes_[n].measured(direction.cell, direction.solid_angle_sr) >= kMeasured;
-      weights[row] = measured ? weights_[n] : 0;
+      shares[row] = measured ? shares_[n] : 0;
       values.row(row) = rest[n][direction.cell].cast<double>().matrix().transpose();
     }
-    if (direction.weights.size() != count || direction.weights != weights) {
-      direction.weights = weights;
-      direction.completion = direction.kriging->completion(weights);
+    if (direction.shares.size() != count || direction.shares != shares) {
+      // Where nobody sees the direction any more its last light stays as well.
+      if (shares.maxCoeff() > 0 || direction.completion.size() == 0)
+        direction.completion = direction.kriging->completion(shares);
+      direction.shares = shares;
       changed = true;
     }
     const Eigen::MatrixXd completed = direction.completion * values;
@@ -222,8 +232,8 @@ const LightField& LiveField::make(double time_s) {
   std::fill(field_.radiance.begin(), field_.radiance.end(), 0.0f);
   sums_->add(radiance_, field_);
   add_own_harmonics(harmonics, changed);
-  for (const LampTrack& lamp : tracks_.lamps()) add_near_lamp(lamp, positions_, weights_, field_);
-  if (changed) find_confidence();
+  for (const LampTrack& lamp : tracks_.lamps()) add_near_lamp(lamp, positions_, shares_, field_);
+  if (changed || weights_ != before) find_confidence();
   return field_;
 }
 
@@ -231,7 +241,7 @@ const LightField& LiveField::make(double time_s) {
 void LiveField::add_own_harmonics(const std::vector<RadianceHarmonics>& remainders, bool changed) {
   const auto count = static_cast<Eigen::Index>(probes_.size());
   if (changed)
-    place_completion_ = places_.completion(Eigen::Map<const Eigen::VectorXd>(weights_.data(), count));
+    place_completion_ = places_.completion(Eigen::Map<const Eigen::VectorXd>(shares_.data(), count));
   Eigen::MatrixXd all(count, 3 * field_.harmonics());
   for (Eigen::Index n = 0; n < count; ++n)
     for (int h = 0; h < field_.harmonics(); ++h)
@@ -258,8 +268,8 @@ void LiveField::find_confidence() {
     known.assign(direction.near.size(), 0.0f);
     for (std::size_t p = 0; p < known.size(); ++p)
       for (std::size_t n = 0; n < probes_.size(); ++n)
-        if ((direction.near[p] >> n & 1) != 0)
-          known[p] = std::max(known[p], static_cast<float>(direction.weights[static_cast<Eigen::Index>(n)]));
+        if ((direction.near[p] >> n & 1) != 0 && direction.shares[static_cast<Eigen::Index>(n)] > 0)
+          known[p] = std::max(known[p], static_cast<float>(weights_[n]));
     const float share = direction.solid_angle_sr / static_cast<float>(4 * kPi);
     const auto& axes = plane.axes();
     std::size_t point = 0;

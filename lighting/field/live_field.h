@@ -29,7 +29,7 @@ struct LiveFieldOptions {
 // directions loses of a probe's own harmonics is given back by place, so that at a probe's place the field is what it
 // measured. Lamps that several probes see are taken out, placed and put back as near lamps (lighting/field/lamp_tracks.h).
 // A probe that says nothing, or nothing of a direction, counts as what the others foretell for its place: it fades without
-// a jump, and the weights need not change. Where all are silent the last light stays, with confidence 0.
+// a jump, and the weights need not change. Where all are silent the last light stays and only confidence fades, to 0.
 // One thread at a time.
 class LiveField {
  public:
@@ -46,7 +46,7 @@ class LiveField {
   // The field at a time. Valid until the next call.
   const LightField& make(double time_s);
 
-  // What each probe counts, 0 to 1, at the last make.
+  // What is known from each probe, 0 to 1, at the last make: 0 once it is silent.
   [[nodiscard]] std::span<const double> weights() const { return weights_; }
   [[nodiscard]] const std::vector<LampTrack>& lamps() const { return tracks_.lamps(); }
   [[nodiscard]] const std::vector<Vec3d>& positions() const { return positions_; }
@@ -63,7 +63,9 @@ class LiveField {
   std::vector<Vec3d> positions_;
   SpherePartition partition_;
   std::vector<Probe> probes_;
-  std::vector<double> weights_;
+  std::vector<double> weights_;  // [probes], what is known from each
+  std::vector<double>
+      shares_;  // [probes], how each counts in the mix: as weights_, but not fading where all are silent
   std::optional<double> last_s_;
   std::vector<Direction> directions_;
   Eigen::MatrixXd cell_harmonics_;  // [25][directions]

@@ -11,8 +11,11 @@ namespace lightwell {
 namespace {
 
 constexpr double kPower = 1.5;
-// Relative to the spread: variance of a measured value, and of the mean slope over the spread.
-constexpr double kNugget = 1e-4, kSlope = 2;
+// Variance of a measured value, relative to that of the light over the usual distance of two places.
+constexpr double kNugget = 1e-4;
+// Below this a double's rounding would tell places apart. Relative to the variance over the spread, as all that follows.
+constexpr double kLeastNugget = 1e-10;
+constexpr double kSlope = 2;  // variance of the mean slope over the spread
 // Any number that makes the covariance positive definite: it falls out with the unknown mean.
 constexpr double kLevel = 10;
 
@@ -26,6 +29,20 @@ Eigen::MatrixXd rays_of(const Vec3d& direction, std::span<const Vec3d> positions
   for (std::size_t n = 0; n < positions.size(); ++n)
     rays.col(static_cast<Eigen::Index>(n)) = across_m(positions[n], u, v);
   return rays;
+}
+
+// Distance of two places of one neighbourhood: the first quartile, so that neither few far places nor two neighbourhoods
+// far apart count. 0 where no two places differ.
+double usual_distance(const Eigen::MatrixXd& places) {
+  std::vector<double> distances;
+  for (Eigen::Index i = 0; i < places.cols(); ++i)
+    for (Eigen::Index j = 0; j < i; ++j)
+      if (const double distance = (places.col(i) - places.col(j)).norm(); distance > 0)
+        distances.push_back(distance);
+  if (distances.empty()) return 0;
+  const auto quartile = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 4);
+  std::nth_element(distances.begin(), quartile, distances.end());
+  return *quartile;
 }
 
 }  // namespace
@@ -44,7 +61,8 @@ Kriging::Kriging(const Eigen::MatrixXd& places)
     for (Eigen::Index j = 0; j < count; ++j)
       covariances(i, j) =
           covariance((places_.col(i) - places_.col(j)).norm(), places_.col(i).dot(places_.col(j)));
-  covariances.diagonal().array() += kNugget;
+  const double usual = std::min(usual_distance(places_) / spread_, 1.0);
+  covariances.diagonal().array() += std::max(kNugget * std::pow(usual, kPower), kLeastNugget);
   const Eigen::MatrixXd inverse = covariances.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
   mean_ = inverse.rowwise().sum();
   const double total = mean_.sum();
@@ -60,13 +78,16 @@ Eigen::VectorXd Kriging::weights(const Eigen::VectorXd& at) const {
   return precision_ * covariances + mean_;
 }
 
-Eigen::MatrixXd Kriging::completion(const Eigen::VectorXd& weights) const {
-  const Eigen::Index count = weights.size();
+Eigen::MatrixXd Kriging::completion(const Eigen::VectorXd& given) const {
+  const Eigen::Index count = given.size();
   Eigen::MatrixXd result = Eigen::MatrixXd::Identity(count, count);
+  if (!(given.maxCoeff() > 0)) return result;
+  // Where all count little, they are still all that is known: to fade together must not make the light smoother.
+  const Eigen::VectorXd weights = given / given.maxCoeff();
   std::vector<Eigen::Index> open;
   for (Eigen::Index i = 0; i < count; ++i)
     if (weights[i] < 1) open.push_back(i);
-  if (open.empty() || !(weights.maxCoeff() > 0)) return result;
+  if (open.empty()) return result;
   // The likeliest values: least valuesᵀ P values + Σ P_ii w / (1 − w) (value − measured)², those that count 1 held.
   Eigen::MatrixXd system(open.size(), open.size());
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(open.size()), count);

@@ -13,20 +13,22 @@ namespace lightwell {
 
 // Interpolation between few places by universal kriging: the linear combination of what was measured that has the least
 // mean square error for light whose mean square difference between two places grows as their distance to the power 1.5,
-// on a plane of unknown height and little known slope. Exact at the places, smooth between them, and defined however
+// on a plane of unknown height and little known slope. At the places their values, smooth between them, and defined however
 // they lie: one place gives its value everywhere, places on a line or in a plane say nothing across it.
 // source: Matheron 1973, "The intrinsic random functions and their applications"
 class Kriging {
  public:
-  // places: [dimensions][count], metres; at least one. Places closer than about a hundredth of their spread share an error.
+  // places: [dimensions][count], metres; at least one. A place a tenth of the usual distance or more from all others has its
+  // value within .5 %; those closer than about a hundredth share an error. Usual is the first quartile of all distances, if
+  // that is above 1e-4 of the places' spread.
   explicit Kriging(const Eigen::MatrixXd& places);
 
   // What each place counts at `at`: [count], sum 1.
   [[nodiscard]] Eigen::VectorXd weights(const Eigen::VectorXd& at) const;
   // The precision of the values: valuesᵀ · precision · values is how unlikely they are, 0 for equal ones. [count][count]
   [[nodiscard]] const Eigen::MatrixXd& precision() const { return precision_; }
-  // What to take for the values where each counts only in part. weights: [count], 0 to 1, of values as measured; a value
-  // that counts 1 stays, one that counts 0 becomes what the others foretell for its place. Where all are 0 all stay.
+  // What to take for the values where each counts only in part. weights: [count], 0 to 1, of values as measured; one that
+  // counts as much as any stays, one that counts 0 becomes what the others foretell for its place. Where all are 0 all stay.
   [[nodiscard]] Eigen::MatrixXd completion(const Eigen::VectorXd& weights) const;
 
  private:

@@ -190,6 +190,30 @@ TEST(LampTracks, LampsThatOneProbeSeesAsOneShareItsRay) {
     EXPECT_NEAR(luminance(lamp.intensity), lamp.position.y() < 2.5 ? 100 : 90, 3);
 }
 
+// More probes than are paired in one update: all pairs have their turn.
+TEST(LampTracks, AnyTwoOfManyProbesFindWhatTheyAloneSee) {
+  constexpr std::size_t kMany = 50;
+  std::vector<Vec3d> places;
+  for (std::size_t n = 0; n < kMany; ++n)
+    places.emplace_back(0.4 * static_cast<double>(n % 10), 0, 0.4 * static_cast<double>(n / 10));
+  const test::LampBall ball{{1.8, 2, 1.1}, 0.03, Rgbd::Constant(100)};
+  for (const auto& [a, b] : {std::pair{0u, 49u}, {7u, 20u}, {3u, 41u}, {12u, 15u}}) {
+    Probes probes(places);
+    LampTracks tracks;
+    tracks.update(probes.see({}), 0);
+    std::vector<ProbeSightings> seen;
+    for (const ProbeSightings& probe : probes.see({ball})) seen.push_back(probe);
+    for (std::size_t n = 0; n < kMany; ++n)
+      if (n != a && n != b) {
+        seen[n].lamps = {};
+        seen[n].theta_max_rad = 0.05;  // looks elsewhere
+      }
+    for (int frame = 0; frame < 4; ++frame) tracks.update(seen, 1 / 30.0);
+    ASSERT_EQ(tracks.lamps().size(), 1u) << a << " " << b;
+    EXPECT_LT((tracks.lamps()[0].position - ball.position).norm(), 1e-6);
+  }
+}
+
 TEST(LampFinder, MeasuresSmallLampsAnywhereInTheMap) {
   const SpherePartition sphere(384);
   const PolarCells cells({}, sphere);

@@ -200,13 +200,52 @@ TEST(LiveField, SilentProbesFadeWithoutAJumpAndComeBack) {
 }
 
 TEST(LiveField, WhereAllAreSilentTheLastLightStaysUnknown) {
-  LiveField live(options_of(4), {{0, 0, 0}, {1, 1, 1}});
-  for (std::size_t n = 0; n < 2; ++n) live.update(n, test::map_at(kWalls, live.positions()[n]), 0);
-  const float light = live.make(0).radiance[0];
-  for (int i = 1; i < 100; ++i) live.make(0.1 * i);
-  EXPECT_NEAR(live.make(10).radiance[0], light, 0.3f * light);
-  EXPECT_GT(live.make(10).radiance[0], 0);
-  EXPECT_EQ(live.make(10).confidence[0], 0);
+  LiveField live(options_of(4), test::random_positions(5, 9));
+  const StageLight linear = {test::linear_field, {}};
+  for (std::size_t n = 0; n < 5; ++n) live.update(n, test::map_at(linear, live.positions()[n]), 0);
+  const LightField first = live.make(0);
+  float known = first.confidence[20];
+  EXPECT_GT(known, 0.1f);
+  for (int frame = 1; frame < 100; ++frame) {
+    const LightField& field = live.make(frame / 30.0);
+    ASSERT_EQ(field.radiance, first.radiance) << frame;
+    EXPECT_LE(field.confidence[20], known);
+    if (frame == 45) {
+      EXPECT_NEAR(field.confidence[20], first.confidence[20] / 2, 0.02f * first.confidence[20]);
+    }
+    known = field.confidence[20];
+  }
+  EXPECT_EQ(*std::max_element(live.make(4).confidence.begin(), live.make(4).confidence.end()), 0);
+  // The first who is back does not throw the others' last light away.
+  live.update(0, test::map_at(linear, live.positions()[0]), 4);
+  const LightField& back = live.make(4);
+  double change = 0, norm = 0;
+  for (std::size_t i = 0; i < back.radiance.size(); ++i) {
+    change += std::pow(static_cast<double>(back.radiance[i] - first.radiance[i]), 2);
+    norm += std::pow(static_cast<double>(first.radiance[i]), 2);
+  }
+  EXPECT_LT(std::sqrt(change / norm), 1e-6);
+  EXPECT_EQ(live.weights()[0], 1);
+  EXPECT_EQ(live.weights()[1], 0);
+  EXPECT_GT(back.confidence[20], 0);
+}
+
+// One with a wider lens falls silent: what it alone saw stays, at the places of all.
+TEST(LiveField, DirectionsThatNobodySeesAnyMoreKeepTheirLight) {
+  LiveField live(options_of(4), test::random_positions(3, 10));
+  const StageLight even = {[](const Vec3d&, const Vec3d&) { return Rgbd::Constant(2); }, {}};
+  const auto map = [&](std::size_t n, double reach) {
+    return test::map_at(even, live.positions()[n], {45, 90, kPi / 2 * reach});
+  };
+  for (std::size_t n = 0; n < 3; ++n) live.update(n, map(n, n == 0 ? 1 : 0.6), 0);
+  const LightField first = live.make(0);
+  for (int frame = 1; frame < 100; ++frame) {
+    for (std::size_t n = 1; n < 3; ++n) live.update(n, map(n, 0.6), frame / 30.0);
+    const LightField& field = live.make(frame / 30.0);
+    for (std::size_t i = 0; i < field.radiance.size(); ++i)
+      ASSERT_NEAR(field.radiance[i], first.radiance[i], 0.02f * first.radiance[0]) << frame;
+  }
+  EXPECT_EQ(live.weights()[0], 0);
 }
 
 TEST(LiveField, MapsOfOtherSizesGoTogether) {

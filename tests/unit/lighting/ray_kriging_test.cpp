@@ -31,6 +31,19 @@ TEST(Kriging, IsExactAtThePlacesAndSumsToOneEverywhere) {
   EXPECT_NEAR(kriging.weights(Vec2d(30, -4)).sum(), 1, 1e-7);
 }
 
+// However far from the others one place is, and however far apart two groups are: of a spread that is set by them, the nugget
+// would take .03 to .14.
+TEST(Kriging, IsExactWithOutliers) {
+  for (const double away : {10.0, 100.0, 3000.0})
+    for (const Eigen::Index moved : {1, 5}) {
+      Eigen::MatrixXd places = random_places(2, 10);
+      places.leftCols(moved).colwise() += Vec2d(away, -away);
+      const Kriging kriging(places);
+      for (Eigen::Index n = 0; n < places.cols(); ++n)
+        EXPECT_NEAR(kriging.weights(places.col(n))[n], 1, 2e-3) << away << " " << moved << " " << n;
+    }
+}
+
 TEST(Kriging, OnePlaceGivesItsValueEverywhere) {
   const Kriging kriging(Eigen::MatrixXd::Constant(3, 1, 5.0));
   EXPECT_NEAR(kriging.weights(Vec3d(-7, 2, 1))[0], 1, 1e-12);
@@ -81,6 +94,14 @@ TEST(Kriging, AValueFadesEvenlyFromMeasuredToForetold) {
   EXPECT_NEAR(at(1 - 1e-6), at(1), 1e-5);
   EXPECT_NEAR(at(1e-6), at(0), 1e-5);
   EXPECT_NEAR(at(0.5), (at(0) + at(1)) / 2, 1e-9);
+}
+
+TEST(Kriging, ValuesThatFadeTogetherKeepTheirMix) {
+  const Kriging kriging(random_places(2, 6));
+  Eigen::VectorXd weights(6);
+  weights << 1, 0.5, 1, 0, 0.2, 1;
+  EXPECT_LT((kriging.completion(1e-3 * weights) - kriging.completion(weights)).norm(), 1e-12);
+  EXPECT_TRUE(kriging.completion(Eigen::VectorXd::Constant(6, 0.1)).isIdentity());
 }
 
 TEST(Kriging, WhereNothingCountsAllStays) {
