@@ -8,7 +8,9 @@
 
 #include <chrono>
 #include <cstring>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "interface/dds_topics.h"
 #include "tests/integration/dds_growth/next.h"  // generated from next.idl
@@ -24,11 +26,13 @@ constexpr auto kPatience = 20s;  // longer than discovery takes on a busy machin
 // The next version on the same topic under the same type name, as another program would have it.
 class NextVersion : public testing::Test {
  protected:
-  NextVersion() {
-    descriptor_.m_typename = "lightwell::LightFrame";
+  NextVersion() : NextVersion(lightwell_next_LightFrame_desc, "LightFrame") {}
+  NextVersion(dds_topic_descriptor_t descriptor, const std::string& name) {
+    const std::string type = "lightwell::" + name, topic = "lightwell/" + name;
+    descriptor.m_typename = type.c_str();  // is copied
     const auto id = static_cast<dds_domainid_t>(test::own_domain().domain);
     participant_ = dds_create_participant(id, nullptr, nullptr);
-    topic_ = dds_create_topic(participant_, &descriptor_, "lightwell/LightFrame", nullptr, nullptr);
+    topic_ = dds_create_topic(participant_, &descriptor, topic.c_str(), nullptr, nullptr);
     EXPECT_GT(topic_, 0);
     dds_qset_liveliness(qos_, DDS_LIVELINESS_AUTOMATIC, DDS_SECS(1));
     dds_qset_reliability(qos_, DDS_RELIABILITY_BEST_EFFORT, 0);
@@ -39,7 +43,6 @@ class NextVersion : public testing::Test {
   }
 
   std::shared_ptr<DdsDomain> domain_ = DdsDomain::open(test::own_domain()).value();
-  dds_topic_descriptor_t descriptor_ = lightwell_next_LightFrame_desc;
   dds_qos_t* qos_ = dds_create_qos();
   dds_entity_t participant_ = 0;
   dds_entity_t topic_ = 0;
@@ -114,6 +117,101 @@ TEST_F(NextVersion, ReaderUnderstandsTodaysWriterAndFindsNewMembersEmpty) {
   EXPECT_EQ(received.lights._buffer[0].angular_radius_rad, 0.125f);
   EXPECT_EQ(received.lights._buffer[0].distance_m, 0);
   EXPECT_EQ(received.zones._length, 0u);
+  dds_return_loan(reader, &sample, count);
+}
+
+class NextField : public NextVersion {
+ protected:
+  NextField() : NextVersion(lightwell_next_FieldFrame_desc, "FieldFrame") {
+    dds_qset_reliability(qos_, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
+    dds_qset_durability(qos_, DDS_DURABILITY_TRANSIENT_LOCAL);
+  }
+};
+
+constexpr std::uint16_t kHalfOne = 0x3c00;  // IEEE 754
+
+TEST_F(NextField, WriterIsUnderstoodByTodaysReader) {
+  const auto reader = FieldReader::create(domain_).value();
+  const dds_entity_t writer = dds_create_writer(participant_, topic_, qos_, nullptr);
+  ASSERT_GT(writer, 0);
+  std::vector<std::uint16_t> radiance(8 * 12, kHalfOne);
+  std::vector<std::uint8_t> confidence(8, 255), blocked(8, 7);
+  lightwell_next_FieldProbe probes[2] = {{"left", {1, 2, 3}, 11, 0.5f, 1, {0, 0, 0, 1}},
+                                         {"right", {4, 5, 6}, 12, 0.25f, 0.5f, {0, 1, 0, 0}}};
+  lightwell_next_FieldLamp lamps[2] = {{21, {0, 2, 0}, 0.01f, {1, 2, 3}, 1, 0.05f},
+                                       {22, {1, 2, 0}, 0.02f, {4, 5, 6}, 0.75f, 0.06f}};
+  lightwell_next_FieldFrame sent{};
+  std::strcpy(sent.probe, "stage");
+  sent.header.clock_offset_s = 1e300;
+  for (int a = 0; a < 3; ++a) {
+    sent.size[a] = 2;
+    sent.high[a] = 1;
+  }
+  sent.degree = 1;
+  sent.scale = 4;
+  sent.half_radiance = {96, 96, radiance.data(), false};
+  sent.confidence = {8, 8, confidence.data(), false};
+  sent.probes = {2, 2, probes, false};
+  sent.lamps = {2, 2, lamps, false};
+  sent.blocked = {8, 8, blocked.data(), false};
+  FieldFrame received;
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  bool taken = false;
+  while (!taken && std::chrono::steady_clock::now() < deadline) {
+    ++sent.header.number;
+    ASSERT_EQ(dds_write(writer, &sent), DDS_RETCODE_OK);
+    taken = reader->take(received, 20ms);
+  }
+  ASSERT_TRUE(taken) << reader->refusal();
+  EXPECT_EQ(received.header.probe, "stage");
+  EXPECT_EQ(received.field.degree, 1);
+  EXPECT_EQ(received.field.radiance, std::vector<float>(96, 4.0f));
+  EXPECT_EQ(received.field.confidence, std::vector<float>(8, 1.0f));
+  ASSERT_EQ(received.probes.size(), 2u);
+  EXPECT_EQ(received.probes[1].name, "right");
+  EXPECT_EQ(received.probes[1].position, Vec3d(4, 5, 6));
+  EXPECT_EQ(received.probes[1].weight, 0.5f);
+  ASSERT_EQ(received.lamps.size(), 2u);
+  EXPECT_EQ(received.lamps[1].id, 22u);
+  EXPECT_EQ(received.lamps[1].intensity[2], 6);
+  EXPECT_EQ(received.lamps[1].weight, 0.75f);
+}
+
+TEST_F(NextField, ReaderUnderstandsTodaysWriterAndFindsNewMembersEmpty) {
+  const auto writer = FieldWriter::create(domain_, "stage").value();
+  const dds_entity_t reader = dds_create_reader(participant_, topic_, nullptr, nullptr);
+  ASSERT_GT(reader, 0);
+  FieldFrame sent;
+  sent.field.grid = {{2, 2, 2}, Vec3d::Zero(), Vec3d::Ones()};
+  sent.field.degree = 1;
+  sent.field.radiance.assign(96, 1.0f);
+  sent.field.confidence.assign(8, 1.0f);
+  sent.probes = {{"left", Vec3d(1, 2, 3), 11, 0.5f, 1}, {"right", Vec3d(4, 5, 6), 12, 0.25f, 0.5f}};
+  sent.lamps = {{21, Vec3d(0, 2, 0), 0.01f, {1, 2, 3}, 1}, {22, Vec3d(1, 2, 0), 0.02f, {4, 5, 6}, 0.75f}};
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  void* sample = nullptr;
+  dds_sample_info_t info{};
+  int count = 0;
+  while (count == 0 && std::chrono::steady_clock::now() < deadline) {
+    ++sent.header.number;
+    ASSERT_TRUE(writer->write(sent));
+    count = dds_take(reader, &sample, &info, 1, 1);
+    if (count == 0) std::this_thread::sleep_for(5ms);
+  }
+  ASSERT_EQ(count, 1);
+  const auto& received = *static_cast<const lightwell_next_FieldFrame*>(sample);
+  EXPECT_STREQ(received.probe, "stage");
+  EXPECT_EQ(received.header.clock_offset_s, 0);
+  EXPECT_EQ(received.half_radiance._length, 96u);
+  ASSERT_EQ(received.probes._length, 2u);
+  EXPECT_STREQ(received.probes._buffer[1].probe, "right");
+  EXPECT_EQ(received.probes._buffer[1].weight, 0.5f);
+  EXPECT_EQ(received.probes._buffer[1].turn[3], 0);
+  ASSERT_EQ(received.lamps._length, 2u);
+  EXPECT_EQ(received.lamps._buffer[1].id, 22u);
+  EXPECT_EQ(received.lamps._buffer[1].weight, 0.75f);
+  EXPECT_EQ(received.lamps._buffer[1].radius_m, 0);
+  EXPECT_EQ(received.blocked._length, 0u);
   dds_return_loan(reader, &sample, count);
 }
 
