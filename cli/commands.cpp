@@ -24,6 +24,7 @@ Command add_devices(CLI::App& app);
 Command add_doctor(CLI::App& app);
 Command add_evaluate(CLI::App& app);
 Command add_filter(CLI::App& app);
+Command add_develop(CLI::App& app);
 Command add_field(CLI::App& app);
 Command add_luminaire(CLI::App& app);
 Command add_fit(CLI::App& app);
@@ -36,10 +37,10 @@ Command add_status(CLI::App& app);
 
 std::vector<Command> add_commands(CLI::App& app) {
   return {
-      add_lights(app),    add_evaluate(app), add_fit(app),    add_field(app),
-      add_luminaire(app), add_bench(app),    add_board(app),  add_calibrate(app),
-      add_devices(app),   add_doctor(app),   add_filter(app), add_play(app),
-      add_info(app),      add_record(app),   add_repair(app), add_status(app),
+      add_lights(app),    add_evaluate(app), add_fit(app),   add_develop(app),   add_field(app),
+      add_luminaire(app), add_bench(app),    add_board(app), add_calibrate(app), add_devices(app),
+      add_doctor(app),    add_filter(app),   add_play(app),  add_info(app),      add_record(app),
+      add_repair(app),    add_status(app),
   };
 }
 

@@ -10,9 +10,6 @@
 namespace lightwell {
 namespace {
 
-constexpr int kSectors = 360;
-constexpr double kRing_rad = kPi / 180;
-
 bool is_turned(const Eigen::Quaterniond& q) {
   constexpr double kLeast = 1e-6;  // half an angle: a thousandth of a bin
   return q.vec().norm() > kLeast;
@@ -37,14 +34,17 @@ std::vector<bool> seen_bins(const Lens& lens, const PolarGrid& grid) {
 
 }  // namespace
 
-Result<FrameDeveloper> FrameDeveloper::create(const Calibration& calibration, const FrameFormat& format) {
+Result<FrameDeveloper> FrameDeveloper::create(const Calibration& calibration, const FrameFormat& format,
+                                              int height) {
+  verify_bug(height >= 2 && height <= 4096, "height of developed pictures out of range");
+  const double ring_rad = kPi / height;
   const Lens& lens = calibration.lens;
   const double tilt_rad = std::acos(std::clamp(lens.zenith.z(), -1.0, 1.0));
   const double theta_max_rad = std::min(kPi, lens.max_theta_rad + tilt_rad);
   PolarGrid grid;
-  grid.rings = std::min(180, static_cast<int>(std::ceil(theta_max_rad / kRing_rad - 1e-9)));
-  grid.sectors = kSectors;
-  grid.theta_max_rad = grid.rings * kRing_rad;
+  grid.rings = std::min(height, static_cast<int>(std::ceil(theta_max_rad / ring_rad - 1e-9)));
+  grid.sectors = 2 * height;
+  grid.theta_max_rad = grid.rings * ring_rad;
   auto radiometer = Radiometer::create(calibration, format, {.grid = grid, .isa = {}});
   if (!radiometer) return radiometer.error();
   return FrameDeveloper(*std::move(radiometer), WorldPicture(grid, seen_bins(lens, grid)), theta_max_rad);

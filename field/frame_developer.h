@@ -11,12 +11,13 @@
 
 namespace lightwell {
 
-// Raw frames of a probe as pictures of radiance in the world, latitude–longitude at a pixel a degree: response, flat
+// Raw frames of a probe as pictures of radiance in the world, latitude–longitude: response, flat
 // field, lens and gravity as calibrated, by the same kernel as the daemon's frames. For one thread.
 class FrameDeveloper {
  public:
-  // bad_input where calibration and format disagree.
-  static Result<FrameDeveloper> create(const Calibration& calibration, const FrameFormat& format);
+  // height: of the pictures, 2 to 4096; they are twice as wide. bad_input where calibration and format disagree.
+  static Result<FrameDeveloper> create(const Calibration& calibration, const FrameFormat& format,
+                                       int height = 180);
 
   // The angle from its zenith to which the probe sees, in its own frame, radians.
   [[nodiscard]] double theta_max_rad() const { return theta_max_rad_; }

@@ -274,7 +274,7 @@ Result<LatLongImage> read_exr(std::string_view bytes, const std::string& name, s
 
 Result<std::string> exr_from_floats(int width, int height, std::string_view channels,
                                     std::span<const float> pixels, ExrContent content,
-                                    std::span<const ExrText> texts) {
+                                    const ExrFacts& facts) {
   verify_bug(width > 0 && height > 0 &&
                  pixels.size() ==
                      channels.size() * static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
@@ -284,7 +284,12 @@ Result<std::string> exr_from_floats(int width, int height, std::string_view chan
     header.compression() = Imf::ZIP_COMPRESSION;
     Imf::addChromaticities(header, Imf::Chromaticities());  // OpenEXR's default is Rec. 709, D65
     if (content == ExrContent::lat_long_environment) Imf::addEnvmap(header, Imf::ENVMAP_LATLONG);
-    for (const ExrText& text : texts) header.insert(text.name, Imf::StringAttribute(text.value));
+    for (const ExrText& text : facts.texts) header.insert(text.name, Imf::StringAttribute(text.value));
+    if (facts.white_luminance_cd_m2)
+      Imf::addWhiteLuminance(header, static_cast<float>(*facts.white_luminance_cd_m2));
+    if (facts.exposure_s) Imf::addExpTime(header, static_cast<float>(*facts.exposure_s));
+    if (const auto& t = facts.timecode)
+      Imf::addTimeCode(header, Imf::TimeCode(t->hours, t->minutes, t->seconds, t->frames, t->drop_frame));
     Imf::FrameBuffer frame;
     const std::size_t stride = channels.size() * sizeof(float);
     for (std::size_t c = 0; c < channels.size(); ++c) {

@@ -6,7 +6,9 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "interface/timecode.h"
 #include "lighting/lat_long_image.h"
 #include "lighting/result.h"
 
@@ -32,12 +34,20 @@ struct ExrText {
   std::string name, value;
 };
 
+// What a header says of a picture beside its colours.
+struct ExrFacts {
+  std::vector<ExrText> texts;
+  std::optional<double> white_luminance_cd_m2;  // of (1, 1, 1)
+  std::optional<Timecode> timecode;
+  std::optional<double> exposure_s;
+};
+
 // The bytes of an EXR file: 32 bit float, ZIP, linear Rec. 709. Row 0 at the top.
 // channels: one letter each, in the order of the samples, e.g. "RGBA"; pixels: [height][width][channel]
 // failed: not enough memory, or a size EXR does not have
 Result<std::string> exr_from_floats(int width, int height, std::string_view channels,
                                     std::span<const float> pixels, ExrContent content,
-                                    std::span<const ExrText> texts = {});
+                                    const ExrFacts& facts = {});
 
 // A text attribute of the first part; nothing where it has none of the name. bad_input: no EXR, or a damaged header.
 Result<std::optional<std::string>> exr_text(std::string_view bytes, const std::string& attribute,

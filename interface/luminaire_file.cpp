@@ -167,11 +167,12 @@ Status write_luminaire(const std::filesystem::path& file, const Luminaire& lamp)
   if (lamp.near) json["near"] = json_of(lamp.near->intensity.planes);
   if (lamp.far) json["far"] = json_of(*lamp.far);
   const LatLongImage sheet = lamp.near ? sheet_of(lamp.near->intensity) : sheet_of(*lamp.far);
-  const ExrText text{kAttribute, json.dump(-1, ' ', false, Json::error_handler_t::replace)};
+  ExrFacts facts;
+  facts.texts = {{kAttribute, json.dump(-1, ' ', false, Json::error_handler_t::replace)}};
   const auto bytes =
       exr_from_floats(sheet.width, sheet.height, "RGB",
                       {reinterpret_cast<const float*>(sheet.pixels.data()), sheet.pixels.size() * 3},
-                      ExrContent::picture, {&text, 1});
+                      ExrContent::picture, facts);
   if (!bytes) return Error{bytes.error().kind, file.string() + ": " + bytes.error().message};
   return write_file_atomically(file, *bytes);
 }

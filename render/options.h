@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "interface/frame_name.h"
 #include "lighting/decomposition/decompose.h"
 #include "lighting/light_set.h"
 #include "render/field_balls.h"
-#include "render/frame_name.h"
 #include "render/look.h"
 #include "render/tracking_stream.h"
 

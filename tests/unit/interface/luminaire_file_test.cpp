@@ -84,9 +84,9 @@ TEST(LuminaireFile, BadInputIsRefusedInOneLine) {
   expect_bad(read_luminaire(file), "is no EXR file");
   const std::array<float, 12> pixels{};
   const auto picture_with = [&](const std::string& text) {
-    const ExrText attribute{"lightwell_luminaire", text};
-    const auto bytes =
-        exr_from_floats(2, 2, "RGB", pixels, ExrContent::picture, {&attribute, text.empty() ? 0u : 1u});
+    ExrFacts facts;
+    if (!text.empty()) facts.texts = {{"lightwell_luminaire", text}};
+    const auto bytes = exr_from_floats(2, 2, "RGB", pixels, ExrContent::picture, facts);
     EXPECT_TRUE(bytes && write_file_atomically(file, *bytes));
     return read_luminaire(file);
   };

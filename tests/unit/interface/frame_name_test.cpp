@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "render/frame_name.h"
+#include "interface/frame_name.h"
 
 #include <gtest/gtest.h>
 
-namespace lightwell::render {
+namespace lightwell {
 namespace {
 
 TEST(FrameName, NumbersFramesAsPrintfDoes) {
@@ -30,4 +30,4 @@ TEST(FrameName, RefusesWhatItWouldNotExpand) {
 }
 
 }  // namespace
-}  // namespace lightwell::render
+}  // namespace lightwell

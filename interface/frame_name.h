@@ -7,7 +7,7 @@
 
 #include "lighting/result.h"
 
-namespace lightwell::render {
+namespace lightwell {
 
 // "name_%04d.exr": where a frame's picture goes. Without a number the name holds the last frame of a run.
 struct FrameName {
@@ -22,4 +22,4 @@ struct FrameName {
   static Result<FrameName> parse(const std::string& pattern);
 };
 
-}  // namespace lightwell::render
+}  // namespace lightwell

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "render/frame_name.h"
+#include "interface/frame_name.h"
 
 #include <algorithm>
 
-namespace lightwell::render {
+namespace lightwell {
 
 std::filesystem::path FrameName::file(int frame) const {
   if (!numbered) return before + after;
@@ -40,4 +40,4 @@ Result<FrameName> FrameName::parse(const std::string& pattern) {
   return name;
 }
 
-}  // namespace lightwell::render
+}  // namespace lightwell
