@@ -96,19 +96,27 @@ void print_walk(const WalkTake& walk) {
 
 nlohmann::ordered_json walk_json(const WalkTake& walk, const WalkArguments& o) {
   const WalkCounts& counts = walk.counts();
-  return {
-      {"poses", walk.poses_file().string()},
-      {"calibration", walk.calibration_id()},
-      {"lag_ms", o.lag_ms},
-      {"frames", counts.frames},
-      {"damaged", counts.damaged},
-      {"without_pose", {{"outside", counts.outside}, {"in_gap", counts.in_gap}, {"in_jump", counts.in_jump}}},
-      {"redundant", counts.redundant},
-      {"kept", counts.kept},
-      {"most_difference", walk.redundant().most_difference},
-      {"most_spacing_m", walk.redundant().most_spacing_m},
-      {"clipped_frames", counts.clipped_frames},
-      {"most_clipped_pixels", counts.most_clipped_pixels}};
+  nlohmann::ordered_json spans = nlohmann::ordered_json::array();
+  for (const FramesWithoutPose::Span& span : walk.without_pose().spans())
+    spans.push_back({{"from_s", span.from_s}, {"to_s", span.to_s}, {"frames", span.frames}});
+  return {{"poses", walk.poses_file().string()},
+          {"calibration", walk.calibration_id()},
+          {"lag_ms", o.lag_ms},
+          {"frames", counts.frames},
+          {"damaged", counts.damaged},
+          {"without_pose",
+           {{"outside", counts.outside},
+            {"in_gap", counts.in_gap},
+            {"in_jump", counts.in_jump},
+            {"after_last", counts.after_last},
+            {"spans", spans}}},
+          {"pose_outliers", walk.track().outliers().size()},
+          {"redundant", counts.redundant},
+          {"kept", counts.kept},
+          {"most_difference", walk.redundant().most_difference},
+          {"most_spacing_m", walk.redundant().most_spacing_m},
+          {"clipped_frames", counts.clipped_frames},
+          {"most_clipped_pixels", counts.most_clipped_pixels}};
 }
 
 }  // namespace lightwell::cli

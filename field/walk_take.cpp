@@ -155,18 +155,8 @@ Status WalkTake::read_inputs() {
   frames_ = *std::move(frames);
   auto file = read_poses(options_.poses);
   if (!file) return file.error();
-  track_ = std::make_unique<PoseTrack>(std::move(file->poses), options_.track);
-  if (const std::size_t jump = track_->first_jump(); jump < file->lines.size()) {
-    const auto& poses = track_->poses();
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  ": line %d: %.3g m from the line before, %.3g s earlier: faster than %g m/s; frames there "
-                  "are left out",
-                  file->lines[jump], (poses[jump].pose.position_m - poses[jump - 1].pose.position_m).norm(),
-                  static_cast<double>(poses[jump].time_ns - poses[jump - 1].time_ns) * 1e-9,
-                  options_.track.most_speed_m_s);
-    first_jump_ = options_.poses.string() + text;
-  }
+  track_ = std::make_unique<PoseTrack>(file->poses, options_.track);
+  remark_on(*file);
   const RecordingHeader& header = frames_->reader().header();
   if (options_.calibration.empty() && header.calibration_json.empty())
     return bad(options_.take, "has no calibration attached: allowed with --calibration DIR");
@@ -178,6 +168,26 @@ Status WalkTake::read_inputs() {
   calibration_ = *std::move(calibration);
   developers_ = std::make_shared<Developers>(calibration_, header.format);
   return {};
+}
+
+void WalkTake::remark_on(const PoseFile& file) {
+  const std::string name = options_.poses.string() + ": ";
+  for (const std::string& remark : file.remarks) pose_remarks_.push_back(name + remark);
+  const auto step = [&](const PoseTrack::Jump& jump) {
+    char text[240];
+    std::snprintf(text, sizeof text,
+                  "line %d is %.3g m and %.3g degrees from line %d, %.3g s earlier: allowed "
+                  "up to %g m/s and %.4g degrees/s",
+                  file.lines[jump.to], jump.metres, jump.radians * 180 / kPi, file.lines[jump.from],
+                  jump.seconds, options_.track.most_speed_m_s, options_.track.most_turn_rad_s * 180 / kPi);
+    return std::string(text);
+  };
+  if (const auto& outlier = track_->first_outlier())
+    pose_remarks_.push_back(name + std::to_string(track_->outliers().size()) + " of " +
+                            std::to_string(file.poses.size()) +
+                            " poses are outliers and are left out, the first: " + step(*outlier));
+  if (const auto jump = track_->first_jump())
+    pose_remarks_.push_back(name + step(*jump) + "; frames between are left out");
 }
 
 Status WalkTake::choose_frames(const std::function<void(std::size_t, std::size_t)>& progress) {
@@ -200,7 +210,11 @@ Status WalkTake::choose_frames(const std::function<void(std::size_t, std::size_t
     if (progress && total && *total > 0)
       progress(counts_.frames, std::max<std::size_t>(*total, counts_.frames));
     const PoseTrack::At at = track_->at(raw.info.capture_mono_ns, options_.lag_s);
-    counts_.outside += at.known == PoseTrack::Known::outside ? 1 : 0;
+    without_pose_.add(raw.info.capture_mono_ns, at.known == PoseTrack::Known::yes);
+    const bool outside = at.known == PoseTrack::Known::outside;
+    counts_.outside += outside ? 1 : 0;
+    counts_.after_last +=
+        outside && raw.info.capture_mono_ns + std::llround(options_.lag_s * 1e9) > track_->last_ns() ? 1 : 0;
     counts_.in_gap += at.known == PoseTrack::Known::in_gap ? 1 : 0;
     counts_.in_jump += at.known == PoseTrack::Known::in_jump ? 1 : 0;
     if (at.known != PoseTrack::Known::yes) continue;
@@ -229,12 +243,15 @@ Status WalkTake::choose_frames(const std::function<void(std::size_t, std::size_t
 }
 
 Error WalkTake::no_pose(std::int64_t first_ns, std::int64_t last_ns) const {
-  const auto& poses = track_->poses();
+  std::string jumps;
+  if (counts_.in_jump > 0)
+    jumps = "; " + std::to_string(counts_.in_jump) + " frames are among outliers or in jumps" +
+            (pose_remarks_.empty() ? "" : ", " + pose_remarks_.back());
   return bad(options_.poses, "no frame of " + options_.take.string() + " has a pose: frames are from " +
                                  seconds(first_ns) + " to " + seconds(last_ns) + ", poses from " +
-                                 seconds(poses.front().time_ns) + " to " + seconds(poses.back().time_ns) +
+                                 seconds(track_->first_ns()) + " to " + seconds(track_->last_ns()) +
                                  " at a lag of " + std::to_string(options_.lag_s * 1e3) +
-                                 " ms, both by CLOCK_MONOTONIC");
+                                 " ms, both by CLOCK_MONOTONIC" + jumps);
 }
 
 std::vector<std::string> WalkTake::remarks() const {
@@ -244,12 +261,13 @@ std::vector<std::string> WalkTake::remarks() const {
     char text[240];
     std::snprintf(
         text, sizeof text,
-        "%zu of %zu frames have no pose and are left out: %zu before the first or after the last, %zu in "
-        "gaps above %g s, %zu in jumps",
-        without, counts_.frames, counts_.outside, counts_.in_gap, options_.track.most_gap_s, counts_.in_jump);
-    lines.push_back(take + text);
+        "%zu of %zu frames have no pose and are left out: %zu before the first, %zu after the last, %zu in "
+        "gaps above %g s, %zu in jumps; of the take: ",
+        without, counts_.frames, counts_.outside - counts_.after_last, counts_.after_last, counts_.in_gap,
+        options_.track.most_gap_s, counts_.in_jump);
+    lines.push_back(take + text + without_pose_.text());
   }
-  if (!first_jump_.empty()) lines.push_back(first_jump_);
+  lines.insert(lines.end(), pose_remarks_.begin(), pose_remarks_.end());
   if (counts_.damaged > 0)
     lines.push_back(take + "damaged in " + std::to_string(counts_.damaged) +
                     " places, whose frames are left out");

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "field/field_builder.h"
+#include "field/frames_without_pose.h"
+#include "interface/pose_file.h"
 #include "lighting/calibration.h"
 #include "lighting/field/pose_track.h"
 #include "lighting/field/redundancy.h"
@@ -30,6 +32,7 @@ struct WalkOptions {
 struct WalkCounts {
   std::size_t frames = 0;                            // whole ones
   std::size_t outside = 0, in_gap = 0, in_jump = 0;  // without a pose (PoseTrack::Known)
+  std::size_t after_last = 0;                        // of those outside
   std::size_t redundant = 0;
   std::size_t kept = 0;
   std::size_t damaged = 0;         // places of the file where frames are lost, beside `frames`
@@ -47,12 +50,14 @@ class WalkTake {
       const WalkOptions& options, const std::function<void(std::size_t, std::size_t)>& progress = {});
 
   [[nodiscard]] const WalkCounts& counts() const { return counts_; }
+  [[nodiscard]] const FramesWithoutPose& without_pose() const { return without_pose_; }
+  [[nodiscard]] const PoseTrack& track() const { return *track_; }
   [[nodiscard]] const std::filesystem::path& poses_file() const { return options_.poses; }
   [[nodiscard]] const std::string& calibration_id() const { return calibration_.id; }
   [[nodiscard]] const RedundancyFilter::Limits& redundant() const { return options_.redundant; }
   // One line: take, poses and calibration as they are now, and the frames that are kept.
   [[nodiscard]] std::string origin() const;
-  // A line each: frames without a pose and why, saturated ones, damage.
+  // A line each: frames without a pose, when and why, what is wrong with the poses, saturated frames, damage.
   [[nodiscard]] std::vector<std::string> remarks() const;
 
   // Of the pictures: what lies below what any of them sees is not among the field's directions.
@@ -71,14 +76,16 @@ class WalkTake {
   explicit WalkTake(const WalkOptions& options) : options_(options) {}
   Status read_inputs();
   Status choose_frames(const std::function<void(std::size_t, std::size_t)>& progress);
+  void remark_on(const PoseFile& file);
   [[nodiscard]] Error no_pose(std::int64_t first_ns, std::int64_t last_ns) const;
   Result<LatLongImage> picture(std::size_t kept);
 
   WalkOptions options_;
   Calibration calibration_;
   std::unique_ptr<PoseTrack> track_;
-  std::string first_jump_;  // a line, empty where there is none
+  std::vector<std::string> pose_remarks_;
   WalkCounts counts_;
+  FramesWithoutPose without_pose_;
   std::vector<Frame> kept_;
   double theta_max_rad_ = kPi;
   std::shared_ptr<Frames> frames_;

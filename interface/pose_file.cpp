@@ -7,11 +7,13 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
-#include <deque>
+#include <utility>
 
 #include "interface/atomic_file.h"
 #include "interface/csv_table.h"
+#include "interface/tracker_clock.h"
 
 namespace lightwell {
 namespace {
@@ -21,7 +23,6 @@ constexpr double kMostTime_ns = 9.2e18;  // 64 bits hold a little more
 constexpr const char* kTimes = "a whole number from 0 to 9200000000000000000 nanoseconds";
 constexpr std::array<const char*, 4> kTurn = {"qx", "qy", "qz", "qw"};
 constexpr double kUnitWithin = 0.01;  // of a quaternion's length: rounded to three digits it still is one
-constexpr std::int64_t kDelayWindow_ns = 5'000'000'000;
 
 // Exactly: a double would lose nanoseconds after a hundred days.
 Result<std::int64_t> nanoseconds(const CsvTable& table, std::size_t row, std::string_view column) {
@@ -68,40 +69,61 @@ Result<bool> has_turns(const CsvTable& table) {
   return true;
 }
 
-Error not_rising(const CsvTable& table, std::size_t row, std::string_view column, std::int64_t value,
-                 std::int64_t before) {
-  return {ErrorKind::bad_input, table.place(row) + ": " + std::string(column) + " = " +
-                                    std::to_string(value) + ": allowed above " + std::to_string(before) +
+Error not_rising(const CsvTable& table, std::size_t row, std::int64_t value, std::int64_t before) {
+  return {ErrorKind::bad_input, table.place(row) + ": time_ns = " + std::to_string(value) +
+                                    ": allowed above " + std::to_string(before) +
                                     ", that of the line before"};
 }
 
-// Arrivals less samples: the least of a window around each pose, added to its sample's time.
-void use_tracker_clock(std::vector<TimedPose>& poses, const std::vector<std::int64_t>& samples) {
-  std::vector<std::int64_t> delay(poses.size());
-  for (std::size_t i = 0; i < poses.size(); ++i) delay[i] = poses[i].time_ns - samples[i];
-  std::deque<std::size_t> least;  // of the window, rising from the front
-  std::size_t end = 0, begin = 0;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    for (; end < poses.size() && samples[end] - samples[i] <= kDelayWindow_ns; ++end) {
-      while (!least.empty() && delay[least.back()] >= delay[end]) least.pop_back();
-      least.push_back(end);
-    }
-    for (; samples[i] - samples[begin] > kDelayWindow_ns; ++begin)
-      if (least.front() == begin) least.pop_front();
-    poses[i].time_ns = samples[i] + delay[least.front()];
+void use_tracker_clock(PoseFile& file, const std::vector<std::int64_t>& samples) {
+  constexpr std::size_t kMostSteps = 10;
+  std::vector<std::int64_t> arrivals;
+  for (const TimedPose& pose : file.poses) arrivals.push_back(pose.time_ns);
+  const std::vector<ClockStep> steps = clock_steps(arrivals, samples);
+  if (steps.size() > kMostSteps) {
+    file.remarks.push_back("the tracker's clock (sample_ns) was set " + std::to_string(steps.size()) +
+                           " times, the first in line " + std::to_string(file.lines[steps[0].sample]) +
+                           ": it is not used, poses have their times of arrival");
+    return;
   }
+  for (const ClockStep& step : steps) {
+    char text[120];
+    std::snprintf(text, sizeof text, "line %d: the tracker's clock (sample_ns) was set %s by %.3f s",
+                  file.lines[step.sample], step.by_ns < 0 ? "back" : "forward",
+                  std::abs(static_cast<double>(step.by_ns)) * 1e-9);
+    file.remarks.emplace_back(text);
+  }
+  // Delays on either side of a step, or that fall by more than samples are apart, may bring two poses' times across.
+  const std::vector<std::int64_t> times = sample_times(arrivals, samples, steps);
+  PoseFile kept;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (!kept.poses.empty() && times[i] <= kept.poses.back().time_ns) continue;
+    kept.poses.push_back({times[i], file.poses[i].pose});
+    kept.lines.push_back(file.lines[i]);
+  }
+  if (const std::size_t crossed = times.size() - kept.poses.size(); crossed > 0)
+    file.remarks.push_back(
+        std::to_string(crossed) +
+        " poses are left out: by the tracker's clock they are no later than one before them");
+  file.poses = std::move(kept.poses);
+  file.lines = std::move(kept.lines);
+  file.by_tracker_clock = true;
 }
 
-bool rises(const std::vector<TimedPose>& poses) {
-  return std::adjacent_find(poses.begin(), poses.end(), [](const TimedPose& a, const TimedPose& b) {
-           return a.time_ns >= b.time_ns;
-         }) == poses.end();
+// Up to and with the last line end; all of it where no pose would be left.
+std::string_view whole_lines(std::string_view text, const std::string& file) {
+  const std::string_view whole = text.substr(0, text.find_last_of("\r\n") + 1);
+  if (whole.size() == text.size() || text.find_first_not_of(" \t", whole.size()) == std::string_view::npos)
+    return text;
+  const auto table = CsvTable::parse(whole, file);
+  return table && table->rows() > 0 ? whole : text;
 }
 
 }  // namespace
 
 Result<PoseFile> parse_poses(std::string_view text, const std::string& file) {
-  const auto table = CsvTable::parse(text, file);
+  const std::string_view whole = whole_lines(text, file);
+  const auto table = CsvTable::parse(whole, file);
   if (!table) return table.error();
   if (const Status required = table->require({"time_ns", "x", "y", "z"}); !required) return required.error();
   const auto turns = has_turns(*table);
@@ -110,12 +132,15 @@ Result<PoseFile> parse_poses(std::string_view text, const std::string& file) {
     return Error{ErrorKind::bad_input, file + ": has no poses: allowed 1 line or more of time_ns,x,y,z"};
   PoseFile out;
   out.has_turns = *turns;
+  if (whole.size() < text.size())
+    out.remarks.push_back("line " + std::to_string(1 + std::count(whole.begin(), whole.end(), '\n')) +
+                          ", the last, has no line end: it was cut off and is left out");
   std::vector<std::int64_t> samples;
   for (std::size_t row = 0; row < table->rows(); ++row) {
     const auto time = nanoseconds(*table, row, "time_ns");
     if (!time) return time.error();
     if (row > 0 && *time <= out.poses.back().time_ns)
-      return not_rising(*table, row, "time_ns", *time, out.poses.back().time_ns);
+      return not_rising(*table, row, *time, out.poses.back().time_ns);
     const auto at = position(*table, row);
     if (!at) return at.error();
     TimedPose pose{*time, {*at, Eigen::Quaterniond::Identity()}};
@@ -127,19 +152,15 @@ Result<PoseFile> parse_poses(std::string_view text, const std::string& file) {
     if (!table->text(row, "sample_ns").empty()) {
       const auto sample = nanoseconds(*table, row, "sample_ns");
       if (!sample) return sample.error();
-      if (!samples.empty() && *sample <= samples.back())
-        return not_rising(*table, row, "sample_ns", *sample, samples.back());
+      if (!samples.empty() && *sample == samples.back())
+        return Error{ErrorKind::bad_input, table->place(row) + ": sample_ns = " + std::to_string(*sample) +
+                                               ": allowed another than that of the line before"};
       samples.push_back(*sample);
     }
     out.poses.push_back(pose);
     out.lines.push_back(table->line(row));
   }
-  if (samples.size() == out.poses.size()) {
-    std::vector<TimedPose> by_tracker = out.poses;
-    use_tracker_clock(by_tracker, samples);
-    out.by_tracker_clock = rises(by_tracker);  // a clock that was set meanwhile is no clock
-    if (out.by_tracker_clock) out.poses = std::move(by_tracker);
-  }
+  if (samples.size() == out.poses.size()) use_tracker_clock(out, samples);
   return out;
 }
 

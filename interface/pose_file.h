@@ -23,12 +23,16 @@ struct PoseFile {
   std::vector<int> lines;         // of the file, for messages
   bool has_turns = false;         // else all poses stand as the world does
   bool by_tracker_clock = false;  // times are the tracker's, brought to ours
+  // A line each, without the file's name: a last line that was cut off, steps of the tracker's clock.
+  std::vector<std::string> remarks;
 };
 
 // bad_input that names file, line, column, value and range: no poses, a column missing, numbers that are none or out of
 // range, times that do not rise, a quaternion that is no turn.
+// A last line without a line end was cut off in writing: it is left out and said, but for a file's only pose.
 // With sample_ns in every line, times are the tracker's own, moved by the least delay with which poses arrived around
-// them (±5 s): the network's delays vary, the tracker's sampling does not.
+// them (±5 s): the network's delays vary, the tracker's sampling does not. Where the tracker's clock was set, that begins
+// anew and is said; where it was set too often it is no clock, and times are those of arrival.
 Result<PoseFile> read_poses(const std::filesystem::path& file);
 Result<PoseFile> parse_poses(std::string_view text, const std::string& file);
 

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "lighting/vector.h"
@@ -24,14 +25,25 @@ struct TimedPose {
 };
 
 // A path through poses: straight lines and constant turning between them, and nothing where they tell nothing.
+//
+// A step between two poses that goes or turns faster than the limits is a jump. Poses between two jumps are left out as
+// outliers, as though they had never come, where nothing speaks for them: where it is one alone, or where there are
+// fewer of them than before and after them, the path over them is no jump, and no longer than most_gap_s.
 class PoseTrack {
  public:
   struct Limits {
     double most_gap_s = 0.1;     // between two poses, above which what is between them is not known
     double most_speed_m_s = 20;  // a faster step is a fault of the tracker: what is between is not known
+    double most_turn_rad_s = 4 * kPi;  // likewise: two turns a second
+    // By how much a step may be more than that: trackers' noise, and times of arrival that lie closer than the samples.
+    double noise_m = 0.02, noise_rad = 0.035;
+  };
+  struct Jump {
+    std::size_t from = 0, to = 0;  // of the given poses
+    double metres = 0, radians = 0, seconds = 0;
   };
   // poses: one or more, times rising.
-  PoseTrack(std::vector<TimedPose> poses, const Limits& limits);
+  PoseTrack(const std::vector<TimedPose>& poses, const Limits& limits);
 
   enum class Known { yes, outside, in_gap, in_jump };
   struct At {
@@ -42,14 +54,31 @@ class PoseTrack {
   // the time t + lag_s.
   [[nodiscard]] At at(std::int64_t frame_ns, double lag_s) const;
 
-  [[nodiscard]] const std::vector<TimedPose>& poses() const { return poses_; }
-  // The first pose that is a jump from the one before it; poses().size() where there is none.
-  [[nodiscard]] std::size_t first_jump() const;
+  [[nodiscard]] std::int64_t first_ns() const { return first_ns_; }
+  [[nodiscard]] std::int64_t last_ns() const { return last_ns_; }
+  // Of the given poses, those that are left out, rising.
+  [[nodiscard]] const std::vector<std::size_t>& outliers() const { return outliers_; }
+  [[nodiscard]] const std::optional<Jump>& first_outlier()
+      const {  // the step to it, or from it where it is the first pose
+    return first_outlier_;
+  }
+  // The first step between poses that count, and are in sequence, that is a jump.
+  [[nodiscard]] std::optional<Jump> first_jump() const;
 
  private:
-  [[nodiscard]] Known known_before(std::size_t pose) const;  // between it and the one before
-  std::vector<TimedPose> poses_;
+  struct Kept {
+    TimedPose timed;
+    std::size_t given = 0;
+  };
+  [[nodiscard]] bool is_jump(const TimedPose& from, const TimedPose& to) const;
+  [[nodiscard]] static Jump step(const Kept& from, const Kept& to);
+  void leave_out_outliers(const std::vector<TimedPose>& poses);
+
   Limits limits_;
+  std::int64_t first_ns_, last_ns_;
+  std::vector<Kept> kept_;
+  std::vector<std::size_t> outliers_;
+  std::optional<Jump> first_outlier_;
 };
 
 }  // namespace lightwell

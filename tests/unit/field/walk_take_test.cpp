@@ -204,11 +204,14 @@ TEST_F(WalkTakeTest, FramesWithoutAPoseAreCountedAndSaid) {
   EXPECT_EQ(counts.kept, 10u);
   EXPECT_THAT(
       take->remarks(),
-      ElementsAre(take_name() +
-                      ": 40 of 50 frames have no pose and are left out: 34 before the first or after the "
-                      "last, 5 in gaps above 0.1 s, 1 in jumps",
-                  poses().string() + ": line 5: 8.9 m from the line before, 0.04 s earlier: faster than 20 "
-                                     "m/s; frames there are left out"));
+      ElementsAre(
+          take_name() +
+              ": 40 of 50 frames have no pose and are left out: 10 before the first, 24 after "
+              "the last, 5 in gaps above 0.1 s, 1 in jumps; of the take: 0.000 to 0.180 s (10 frames), "
+              "0.300 to 0.380 s (5 frames), 0.420 s (1 frame), 0.520 to 0.980 s (24 frames)",
+          poses().string() + ": line 5 is 8.9 m and 0 degrees from line 4, 0.04 s earlier: allowed up "
+                             "to 20 m/s and 720 degrees/s; frames between are left out"));
+  EXPECT_EQ(take->without_pose().spans().back().frames, 24u);
   o.lag_s = 100;
   const auto none = WalkTake::open(o);
   ASSERT_FALSE(none.ok());
@@ -217,6 +220,34 @@ TEST_F(WalkTakeTest, FramesWithoutAPoseAreCountedAndSaid) {
             poses().string() + ": no frame of " + take_name() +
                 " has a pose: frames are from 5.000 s to 5.980 s, poses from 5.200 s to 5.500 s at a lag of "
                 "100000.000000 ms, both by CLOCK_MONOTONIC");
+}
+
+TEST_F(WalkTakeTest, AnOutlierOnAFramesOwnTimeIsLeftOutAndSaid) {
+  walk(test::linear_field, 20, Eigen::Quaterniond::Identity());
+  const auto written = [&](const std::vector<int>& wrong) {
+    std::ofstream file(poses());
+    file << "time_ns,x,y,z\n";
+    for (int i = 0; i < 20; ++i)
+      file << kFirst_ns + i * kPeriod_ns << "," << 0.01 * i << ","
+           << (std::find(wrong.begin(), wrong.end(), i) == wrong.end() ? 0 : 50) << ",0\n";
+  };
+  WalkOptions o = options();
+  o.poses = poses();
+  o.lag_s = 0;
+  written({7});
+  const auto take = opened(o);
+  ASSERT_TRUE(take);
+  EXPECT_EQ(take->counts().kept, 20u);
+  EXPECT_LE((WalkTake::probes(take).positions[7] - Vec3d(0.07, 0, 0)).norm(), 1e-12);
+  EXPECT_THAT(take->remarks(),
+              ElementsAre(poses().string() +
+                          ": 1 of 20 poses are outliers and are left out, the first: line 9 is 50 m and 0 "
+                          "degrees from line 8, 0.02 s earlier: allowed up to 20 m/s and 720 degrees/s"));
+  written({1, 3, 5, 7, 9, 11, 13, 15, 17, 19});
+  const auto two_paths = WalkTake::open(o);
+  ASSERT_FALSE(two_paths.ok());
+  EXPECT_THAT(two_paths.error().message, HasSubstr("20 frames are among outliers or in jumps"));
+  EXPECT_THAT(two_paths.error().message, HasSubstr("20 of 20 poses are outliers"));
 }
 
 TEST_F(WalkTakeTest, FramesThatTellNothingNewAreLeftOutAndTheFieldStays) {

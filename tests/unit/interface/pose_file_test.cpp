@@ -114,5 +114,54 @@ TEST(PoseFile, TheTrackersOwnClockTakesTheNetworksDelaysOut) {
   EXPECT_FALSE(parsed(without).by_tracker_clock) << "a pose without a stamp";
 }
 
+TEST(PoseFile, ALastLineThatWasCutOffIsLeftOutAndSaid) {
+  const std::string whole = "time_ns,x,y,z\n100,1,2,3\n200,1.5,2,3\n300,1.25,2,3.125\n";
+  const auto third = whole.find("300");
+  for (std::size_t size = third + 1; size < whole.size();
+       ++size) {  // numbers that are cut may read as others
+    const PoseFile file = parsed(whole.substr(0, size));
+    ASSERT_EQ(file.poses.size(), 2u) << size;
+    ASSERT_EQ(file.remarks.size(), 1u);
+    EXPECT_EQ(file.remarks[0], "line 4, the last, has no line end: it was cut off and is left out");
+  }
+  EXPECT_TRUE(parsed(whole).remarks.empty());
+  EXPECT_TRUE(parsed(whole.substr(0, third) + "  ").remarks.empty());
+  EXPECT_EQ(parsed("time_ns,x,y,z\n100,1,2,3").poses.size(), 1u) << "the only pose of a file made by hand";
+  expect_refused("time_ns,x,y,z\n100,1,2", "poses.csv: line 2: 3 fields: allowed 4, as in the header");
+}
+
+TEST(PoseFile, ATrackersClockThatIsSetBeginsAnewAndIsSaid) {
+  constexpr std::int64_t kMs = 1'000'000, kHour = 3'600'000 * kMs, kStart = 2 * kHour;
+  std::string text = "time_ns,x,y,z,sample_ns\n";
+  for (int i = 0; i < 600; ++i) {
+    const std::int64_t ours = kStart + 10 * kMs * i;
+    const std::int64_t theirs = kStart + 10 * kMs * i - (i < 200 ? 0 : i < 400 ? kHour : 500 * kMs);
+    text += std::to_string(ours + (2 + i * 7 % 5) * kMs) + ",0,0,0," + std::to_string(theirs) + "\n";
+  }
+  const PoseFile file = parsed(text);
+  ASSERT_EQ(file.poses.size(), 600u);
+  EXPECT_TRUE(file.by_tracker_clock);
+  ASSERT_EQ(file.remarks.size(), 2u);
+  EXPECT_EQ(file.remarks[0], "line 202: the tracker's clock (sample_ns) was set back by 3600.000 s");
+  EXPECT_EQ(file.remarks[1], "line 402: the tracker's clock (sample_ns) was set forward by 3599.500 s");
+  for (int i = 0; i < 600; ++i)
+    EXPECT_EQ(file.poses[static_cast<std::size_t>(i)].time_ns, kStart + 10 * kMs * i + 2 * kMs) << i;
+}
+
+TEST(PoseFile, AClockThatIsSetAgainAndAgainIsNotUsed) {
+  std::string text = "time_ns,x,y,z,sample_ns\n";
+  for (int i = 0; i < 100; ++i) text += std::to_string(1000 + i) + ",0,0,0," + std::to_string(500 - i) + "\n";
+  const PoseFile file = parsed(text);
+  EXPECT_FALSE(file.by_tracker_clock);
+  EXPECT_EQ(file.poses[99].time_ns, 1099);
+  ASSERT_EQ(file.remarks.size(), 1u);
+  EXPECT_EQ(
+      file.remarks[0],
+      "the tracker's clock (sample_ns) was set 99 times, the first in line 3: it is not used, poses have "
+      "their times of arrival");
+  expect_refused("time_ns,x,y,z,sample_ns\n1,0,0,0,5\n2,0,0,0,5\n",
+                 "poses.csv: line 3: sample_ns = 5: allowed another than that of the line before");
+}
+
 }  // namespace
 }  // namespace lightwell
