@@ -9,19 +9,14 @@
 #include "cli/number_list.h"
 
 namespace lightwell::cli {
-namespace {
-
-constexpr int kMostPointsASide = 4096;
-
-}  // namespace
 
 Result<FieldGrid> field_grid(const std::string& given_size, const std::string& given_bounds) {
   FieldGrid grid;
   const auto size = number_list(given_size, 3);
-  const auto whole = [](double n) { return n == std::floor(n) && n >= 2 && n <= kMostPointsASide; };
+  const auto whole = [](double n) { return n == std::floor(n) && n >= 2 && n <= kMostFieldSide; };
   if (!size || !std::all_of(size->begin(), size->end(), whole))
     return usage("--grid is " + given_size + ", allowed: NX,NY,NZ, whole numbers from 2 to " +
-                 std::to_string(kMostPointsASide));
+                 std::to_string(kMostFieldSide));
   const auto bounds = number_list(given_bounds, 6);
   if (!bounds)
     return usage("--bounds is " + given_bounds + ", allowed: X0,Y0,Z0,X1,Y1,Z1, six numbers in metres");
@@ -35,6 +30,9 @@ Result<FieldGrid> field_grid(const std::string& given_size, const std::string& g
       return usage("--bounds is " + given_bounds +
                    ", allowed: X0 < X1, Y0 < Y1, Z0 < Z1, -100000 to 100000 metres");
   }
+  if (grid.points() > kMostFieldPoints)
+    return usage("--grid is " + given_size + ": " + std::to_string(grid.points()) +
+                 " points, allowed: up to " + std::to_string(kMostFieldPoints) + ", 512 cubed");
   return grid;
 }
 

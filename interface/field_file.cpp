@@ -6,8 +6,11 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <fstream>
 #include <new>
 #include <sstream>
 
@@ -19,7 +22,6 @@ namespace lightwell {
 namespace {
 
 constexpr const char* kSchema = "lightwell.field/1";
-constexpr std::size_t kFileLimit = std::size_t{8} << 30;
 constexpr float kMostHalf = 65504;
 constexpr float kFinestHalf = 6.1e-5f;  // below it a half float loses digits
 
@@ -135,20 +137,19 @@ Result<FieldFile> header_of(const openvdb::MetaMap& meta, float& scale) {
   const auto low = meta.metaValue<openvdb::Vec3d>("lightwell_low");
   const auto high = meta.metaValue<openvdb::Vec3d>("lightwell_high");
   FieldGrid& grid = result.field.grid;
-  double points = 1;
   for (int a = 0; a < 3; ++a) {
-    if (size[a] < 2 || size[a] > 4096) return field_error("lightwell_size", size[a], "2 to 4096");
+    if (size[a] < 2 || size[a] > kMostFieldSide) return field_error("lightwell_size", size[a], "2 to 4096");
     if (!std::isfinite(low[a]) || !(high[a] > low[a]) || !std::isfinite(high[a]))
       return field_error("lightwell_high", high[a], "finite, above lightwell_low");
     grid.size[static_cast<std::size_t>(a)] = size[a];
     grid.low[a] = low[a];
     grid.high[a] = high[a];
-    points *= size[a];
   }
   result.field.degree = meta.metaValue<int>("lightwell_degree");
   if (result.field.degree < 1 || result.field.degree > kMostFieldDegree)
     return field_error("lightwell_degree", result.field.degree, "1 to 8");
-  if (points > 512.0 * 512 * 512) return field_error("lightwell_size: points", points, "up to 512 cubed");
+  if (grid.points() > kMostFieldPoints)
+    return field_error("lightwell_size: points", static_cast<double>(grid.points()), "up to 512 cubed");
   scale = meta.metaValue<float>("lightwell_scale");
   if (!(scale > 0) || !std::isfinite(scale))
     return field_error("lightwell_scale", static_cast<double>(scale), "above 0");
@@ -220,11 +221,12 @@ Result<FieldFileReport> write_field(const std::filesystem::path& file, const Lig
 }
 
 Result<FieldFile> read_field(const std::filesystem::path& file) {
-  auto bytes = read_text_file(file, kFileLimit);
-  if (!bytes) return bytes.error();
+  std::ifstream input(file, std::ios::binary);
+  if (!input) return bad(file, std::string("cannot read: ") + std::strerror(errno));
+  std::error_code unknown;
+  if (std::filesystem::is_directory(file, unknown)) return bad(file, "is a directory, expected a file");
   try {
     openvdb::initialize();
-    std::istringstream input(*std::move(bytes));
     // Past a file's end OpenVDB would go on with numbers that are none.
     input.exceptions(std::ios::failbit | std::ios::badbit);
     openvdb::io::Stream stream(input, false);

@@ -10,6 +10,10 @@
 
 namespace lightwell {
 
+// Of every field that is written or read.
+inline constexpr int kMostFieldSide = 4096;  // points along an axis
+inline constexpr std::size_t kMostFieldPoints = std::size_t{512} * 512 * 512;
+
 // Points of a field: a regular grid whose outermost points lie on the bounds. Point (i, j, k) is at
 // low + cell · (i, j, k); points are stored with i running fastest.
 struct FieldGrid {

@@ -128,7 +128,17 @@ TEST_F(FieldFileTest, RefusesWhatIsNoWholeFieldInOneLine) {
   other.replace(other.find("lightwell.field/1"), 17, "lightwell.field/9");
   EXPECT_THAT(refused(other),
               testing::HasSubstr("lightwell_schema = lightwell.field/9: allowed lightwell.field/1"));
-  EXPECT_FALSE(read_field(path("absent.vdb")));
+  // The size that a build refuses, too.
+  const std::array<std::int32_t, 3> size = {8, 8, 8}, beyond = {512, 512, 513};
+  const auto text = [](const std::array<std::int32_t, 3>& numbers) {
+    return std::string(reinterpret_cast<const char*>(numbers.data()), sizeof numbers);
+  };
+  other = *bytes;
+  other.replace(other.find(text(size), other.find("lightwell_size")), sizeof size, text(beyond));
+  EXPECT_THAT(refused(other),
+              testing::HasSubstr("lightwell_size: points = 134479872: allowed up to 512 cubed"));
+  EXPECT_THAT(read_field(path("absent.vdb")).error().message,
+              testing::HasSubstr("absent.vdb: cannot read: No such file"));
   EXPECT_FALSE(read_field(folder_.path()));
 }
 
