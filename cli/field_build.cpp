@@ -224,12 +224,13 @@ int run_as(const BuildArguments& o, FieldRanks& ranks) {
   if (const Status ready = ranks.agree(prepared ? Status() : prepared.error()); !ready)
     return speaks ? fail(ready.error()) : static_cast<int>(ready.error().kind);
   const StopNotice notice(prepared->options.scratch_folder / prepared->options.state_name);
+  // Its state stays locked until it is removed: the same command, started again meanwhile, is told so.
   const auto built = build(*prepared, ranks);
   if (!built) return speaks ? fail(built.error()) : static_cast<int>(built.error().kind);
   if (!speaks) return 0;
   const auto file = write_field(o.out, built->field, {o.method, o.max_error});
   if (!file) return fail(file.error());
-  remove_state(prepared->options);
+  built->state->remove();
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   report(o, *prepared, *built, *file, taken.count());
   return 0;
@@ -264,7 +265,7 @@ Command add_field_build(CLI::App& field) {
                    "List of probes, CSV with columns x,y,z,file; or a recording of a walk (TAKE.mkv)")
       ->required()
       ->type_name("FILE");
-  command->add_option("--grid", o->grid, "Points along each axis, 2 to 4096")
+  command->add_option("--grid", o->grid, "Points along each axis, 2 to 4096, in all up to 512 cubed")
       ->required()
       ->type_name("NX,NY,NZ");
   command->add_option("--bounds", o->bounds, "Places of the outermost points, metres")

@@ -17,6 +17,10 @@
 namespace lightwell {
 namespace {
 
+// Of what makes numbers from pictures: one more wherever the same take comes to give other bits, so that an interrupted
+// build of another version is not gone on with. (Its kernels give the same bits on every machine.)
+constexpr int kNumerics = 1;
+
 constexpr std::size_t kHeldOutBuckets = 24;  // spread over the sphere
 constexpr std::size_t kHeldOutOfABucket = 4;
 constexpr std::size_t kCheckedRays = 400'000;                  // a few seconds' fits
@@ -110,10 +114,15 @@ class Builder {
     if (progress_ && rank() == 0) progress_(done, probes() + bins_.directions().size());
   }
 
+  // As rank 0 finds them: what another machine sees of the folder may be a moment older.
   [[nodiscard]] std::vector<std::size_t> missing_chunks() const {
+    std::vector<std::uint8_t> is_missing(store_.chunks(), 1);
+    if (rank() == 0 && state_.found() == FieldState::Found::same)
+      for (std::size_t c = 0; c < is_missing.size(); ++c) is_missing[c] = store_.holds(c) ? 0 : 1;
+    ranks_.broadcast(std::as_writable_bytes(std::span(is_missing)));
     std::vector<std::size_t> missing;
-    for (std::size_t c = 0; c < store_.chunks(); ++c)
-      if (state_.found() != FieldState::Found::same || !store_.holds(c)) missing.push_back(c);
+    for (std::size_t c = 0; c < is_missing.size(); ++c)
+      if (is_missing[c] != 0) missing.push_back(c);
     return missing;
   }
   [[nodiscard]] std::size_t probes_of(std::span<const std::size_t> chunks) const {
@@ -276,16 +285,45 @@ Status check_picture(const LatLongImage& picture, const ProbeProjection& project
                                          ", lens.image_size"};
 }
 
-// All that the numbers come from, but for the program.
-std::string origin_of(const ProbeTake& take, const FieldBuildOptions& o, std::size_t directions) {
+// All that the numbers come from, but for what the caller says of the pictures.
+FieldOrigin origin_of(const ProbeTake& take, const FieldBuildOptions& o, std::size_t directions) {
   std::ostringstream text;
   text.precision(17);
   const auto [nx, ny, nz] = o.grid.size;
-  text << "lightwell.field-state/1\ngrid " << nx << ' ' << ny << ' ' << nz << "\nbounds "
-       << o.grid.low.transpose() << ' ' << o.grid.high.transpose() << "\ndegree " << o.degree << "\nmethod "
+  text << "grid " << nx << ' ' << ny << ' ' << nz << "\nbounds " << o.grid.low.transpose() << ' '
+       << o.grid.high.transpose() << "\ndegree " << o.degree << "\nmethod "
        << (o.method == FieldMethod::best ? "best" : "low") << "\ndirections " << directions << "\nprobes "
-       << take.positions.size() << "\npictures " << o.made_from << '\n';
-  return text.str();
+       << take.positions.size() << "\npictures ";
+  return {"numerics " + std::to_string(kNumerics), text.str()};
+}
+
+// Each rank has read its list, or chosen its frames, by itself: with others than rank 0's it would wait for messages that
+// never come, or give its part of another field.
+Status check_same_take(const ProbeTake& take, const LatLongImage& first, const FieldOrigin& origin,
+                       FieldRanks& ranks) {
+  struct {
+    std::uint64_t probes, content;
+  } own = {take.positions.size(), fnv1a(origin.text())};
+  own.content = fnv1a(std::to_string(first.width) + 'x' + std::to_string(first.height), own.content);
+  for (std::size_t i = 0; i < take.positions.size(); ++i) {
+    const Vec3d& at = take.positions[i];
+    own.content = fnv1a({reinterpret_cast<const char*>(at.data()), sizeof at}, own.content);
+    own.content = fnv1a(take.name(i) + '\n', own.content);
+  }
+  auto rank_0 = own;
+  ranks.broadcast(std::as_writable_bytes(std::span(&rank_0, 1)));
+  const std::string who = "rank " + std::to_string(ranks.rank()) + " has ";
+  Status same;
+  if (own.probes != rank_0.probes)
+    same =
+        Error{ErrorKind::bad_input, who + std::to_string(own.probes) + " probes, rank 0 has " +
+                                        std::to_string(rank_0.probes) + ", allowed: the same on all ranks"};
+  else if (own.content != rank_0.content)
+    same = Error{ErrorKind::bad_input,
+                 who +
+                     "other places, pictures, frames, options or another program than rank 0"
+                     ", allowed: the same on all ranks"};
+  return ranks.agree(same);
 }
 
 Result<DirectionBins> bins_of(const ProbeTake& take, const FieldBuildOptions& options,
@@ -303,8 +341,11 @@ void say_what_was_found(const FieldState& state, const FieldBuildOptions& option
   if (!options.remark) return;
   if (state.found() == FieldState::Found::same)
     options.remark("goes on where an interrupted build stands, in " + state.folder().string());
-  if (state.found() == FieldState::Found::other)
+  if (state.found() == FieldState::Found::other_take)
     options.remark(state.folder().string() + ": was of other pictures or options, begins anew");
+  if (state.found() == FieldState::Found::other_program)
+    options.remark(state.folder().string() +
+                   ": was of another version of this program, which gives other numbers; begins anew");
 }
 
 }  // namespace
@@ -317,8 +358,10 @@ Result<FieldBuild> build_field(const ProbeTake& take, const FieldBuildOptions& o
   const auto first = take.picture(0);
   const Result<DirectionBins> bins = first ? bins_of(take, options, *first) : first.error();
   if (const Status ready = ranks.agree(bins ? Status() : bins.error()); !ready) return ready.error();
-  auto state = FieldState::open(options.scratch_folder, options.state_name,
-                                origin_of(take, options, bins->directions().size()), ranks);
+  FieldOrigin origin = origin_of(take, options, bins->directions().size());
+  if (const Status same = check_same_take(take, *first, origin, ranks); !same) return same.error();
+  origin.take += options.made_from + '\n';
+  auto state = FieldState::open(options.scratch_folder, options.state_name, origin, ranks);
   if (!state) return state.error();
   if (ranks.rank() == 0) say_what_was_found(*state, options);
   Builder builder(take, options, progress, ranks, *state, *bins);
@@ -331,13 +374,8 @@ Result<FieldBuild> build_field(const ProbeTake& take, const FieldBuildOptions& o
     return sorted.error();
   }
   if (const Status summed = builder.sum_directions(build); !summed) return summed.error();
+  if (state->is_kept()) build.state = std::make_unique<FieldState>(*std::move(state));
   return build;
-}
-
-void remove_state(const FieldBuildOptions& options) {
-  if (options.state_name.empty()) return;
-  std::error_code ignored;
-  std::filesystem::remove_all(options.scratch_folder / options.state_name, ignored);
 }
 
 }  // namespace lightwell

@@ -5,10 +5,12 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "field/field_ranks.h"
+#include "field/field_state.h"
 #include "lighting/field/direction_estimator.h"
 #include "lighting/field/light_field.h"
 #include "lighting/lat_long_image.h"
@@ -33,7 +35,7 @@ struct FieldBuildOptions {
   std::filesystem::path scratch_folder;  // for sorted samples, probes × directions × 12 bytes while it runs
 
   // A folder in scratch_folder where an interrupted build stands and the next goes on, to the same bits. It stays until
-  // remove_state, but where a build fails for its pictures' sake. Empty: nothing stays.
+  // it is removed (FieldBuild::state), but where a build fails for its pictures' sake. Empty: nothing stays.
   std::string state_name;
   std::string made_from;  // one line: the pictures and their projection, so that others are told from them
   std::chrono::seconds save_every{30};             // of the running sums
@@ -51,6 +53,9 @@ struct FieldBuild {
   // Of best, on rank 0: RayConsistency.
   std::vector<DoubtfulProbe> doubtful;
   double close_difference = 0;
+  // With a state_name: what has been done, locked against other builds while this lives. Rank 0 removes it when the field
+  // is written.
+  std::unique_ptr<FieldState> state;
 };
 
 // done of total: pictures first, then directions; called from one thread at a time, of rank 0.
@@ -58,11 +63,10 @@ using FieldProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 // Resamples a take to a field: pictures are cut into directions and sorted into buckets on disk, then each bucket is read
 // once and added to the running sums. Memory: the field twice, a bucket, and a few pictures, however long the take.
-// Fails where a picture cannot be read or is not of the first one's size (bad_input), or the disk is full (failed).
+// Fails where a picture cannot be read or is not of the first one's size, or ranks have not the same take (bad_input), or
+// the disk is full (failed).
 // source: Löw et al. 2009, section 3
 Result<FieldBuild> build_field(const ProbeTake& take, const FieldBuildOptions& options,
                                const FieldProgress& progress = {});
-// After the field is written: what the build has left in its state_name.
-void remove_state(const FieldBuildOptions& options);
 
 }  // namespace lightwell

@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -22,7 +23,9 @@ namespace lightwell {
 namespace {
 
 constexpr const char* kMadeFrom = "made_from.txt";
+constexpr const char* kSchema = "lightwell.field-state/1 ";  // how it begins
 constexpr const char* kSums = "sums";
+constexpr const char* kLock = "lock";
 constexpr std::size_t kMostText = std::size_t{1} << 20;
 
 struct SumsHeader {
@@ -61,11 +64,77 @@ SumsHeader header_of(std::uint64_t mark, const FieldState::Progress& progress, c
   return header;
 }
 
+// Whether what stands in a state's place is none. kMadeFrom comes before all others and goes after them: where it is
+// missing there is no more than the lock, and what was to become kMadeFrom.
+bool is_foreign(const std::filesystem::path& folder) {
+  std::error_code absent;
+  if (!std::filesystem::is_directory(std::filesystem::symlink_status(folder, absent))) return true;
+  const auto before = read_text_file(folder / kMadeFrom, kMostText);
+  if (before) return !before->starts_with(kSchema);
+  for (const auto& entry : std::filesystem::directory_iterator(folder, absent)) {
+    const std::string name = entry.path().filename().string();
+    if (name != kLock && !name.starts_with(kMadeFrom)) return true;
+  }
+  return false;
+}
+
+// The lock of a file, as a descriptor; -1 where another has it, or where the file no longer has this name: what was
+// opened before a build's end and locked after it.
+int lock_of(const std::filesystem::path& file, int lock) {
+  // A file system without locks leaves this to the user.
+  const bool is_taken = ::flock(lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  struct stat held {
+  }, named{};
+  if (!is_taken && ::fstat(lock, &held) == 0 && ::stat(file.c_str(), &named) == 0 &&
+      held.st_dev == named.st_dev && held.st_ino == named.st_ino)
+    return lock;
+  ::close(lock);
+  return -1;
+}
+
+// The lock that stands in the folder, which is made where it is absent. Nothing is put into a folder that is not ours.
+Result<int> lock_in(const std::filesystem::path& folder) {
+  constexpr int kMostTries = 100;  // builds that end just now
+  int foreign = 0;
+  for (int i = 0; i < kMostTries; ++i) {
+    const bool is_new = ::mkdir(folder.c_str(), 0777) == 0;
+    if (!is_new && errno != EEXIST) return failure(folder, "cannot write", errno);
+    if (!is_new && is_foreign(folder)) {  // or looked so while a build ended
+      ++foreign;
+      continue;
+    }
+    const int file = ::open((folder / kLock).c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+    if (file < 0 && errno == ENOENT) continue;
+    if (file < 0) return failure(folder, "cannot write", errno);
+    if (const int lock = lock_of(folder / kLock, file); lock >= 0) return lock;
+  }
+  if (foreign == kMostTries)
+    return Error{ErrorKind::failed,
+                 folder.string() +
+                     ": is not the folder of an interrupted build, which goes by this name: allowed "
+                     "nothing else there, or another --out"};
+  return Error{ErrorKind::failed, folder.string() + ": another build is writing here"};
+}
+
+void empty_but_for_the_lock(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  std::vector<std::filesystem::path> entries;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (entry.path().filename() != kLock && entry.path().filename() != kMadeFrom)
+      entries.push_back(entry.path());
+  for (const auto& entry : entries) std::filesystem::remove_all(entry, ignored);
+  std::filesystem::remove(folder / kMadeFrom, ignored);
+}
+
 }  // namespace
 
 std::uint64_t fnv1a(std::string_view text, std::uint64_t hash) {
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
   return hash;
+}
+
+std::string FieldOrigin::text() const {
+  return kSchema + program + '\n' + take;
 }
 
 FieldState::FieldState(FieldState&& other) noexcept
@@ -81,7 +150,7 @@ FieldState::~FieldState() {
 }
 
 Result<FieldState> FieldState::open(const std::filesystem::path& folder, const std::string& name,
-                                    const std::string& made_from, FieldRanks& ranks) {
+                                    const FieldOrigin& made_from, FieldRanks& ranks) {
   const std::filesystem::path place = folder.empty() ? "." : folder;
   if (name.empty()) {
     verify_bug(ranks.count() == 1, "ranks share a folder by its name");
@@ -90,7 +159,7 @@ Result<FieldState> FieldState::open(const std::filesystem::path& folder, const s
     return FieldState(text, false);
   }
   FieldState state(folder / name, true);
-  state.mark_ = fnv1a(made_from);
+  state.mark_ = fnv1a(made_from.text());
   Status prepared;
   if (ranks.rank() == 0) prepared = state.prepare(made_from);
   if (prepared = ranks.agree(prepared); !prepared) return prepared.error();
@@ -105,27 +174,22 @@ Result<FieldState> FieldState::open(const std::filesystem::path& folder, const s
   return state;
 }
 
-Status FieldState::prepare(const std::string& made_from) {
-  std::error_code error;
-  std::filesystem::create_directory(folder_, error);
-  if (error) return failure(folder_, "cannot write", error.value());
-  lock_ = ::open((folder_ / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (lock_ < 0) return failure(folder_, "cannot write", errno);
-  // A file system without locks leaves this to the user.
-  if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    return Error{ErrorKind::failed, folder_.string() + ": another build is writing here"};
+Status FieldState::prepare(const FieldOrigin& made_from) {
+  auto lock = lock_in(folder_);
+  if (!lock) return lock.error();
+  lock_ = *lock;
   const auto before = read_text_file(folder_ / kMadeFrom, kMostText);
-  if (before && *before == made_from) {
+  if (before && *before == made_from.text()) {
     found_ = Found::same;
-    std::filesystem::remove(folder_ / "stopped", error);
+    std::error_code absent;
+    std::filesystem::remove(folder_ / "stopped", absent);
     return {};
   }
-  for (const auto& entry : std::filesystem::directory_iterator(folder_, error))
-    if (entry.path().filename() != "lock") {
-      found_ = Found::other;
-      std::filesystem::remove_all(entry.path(), error);
-    }
-  return write_file_atomically(folder_ / kMadeFrom, made_from);
+  if (before)
+    found_ =
+        before->substr(before->find('\n') + 1) == made_from.take ? Found::other_program : Found::other_take;
+  empty_but_for_the_lock(folder_);
+  return write_file_atomically(folder_ / kMadeFrom, made_from.text());
 }
 
 Status FieldState::save(const Progress& progress, const FieldSums& sums) const {
@@ -158,7 +222,16 @@ std::optional<FieldState::Progress> FieldState::load(FieldSums& sums) const {
 
 void FieldState::remove() {
   std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
+  if (!kept_) {
+    std::filesystem::remove_all(folder_, ignored);
+    return;
+  }
+  if (lock_ < 0) return;
+  empty_but_for_the_lock(folder_);
+  // From here on another build may begin: what it puts there keeps the folder.
+  std::filesystem::remove(folder_ / kLock, ignored);
+  std::filesystem::remove(folder_, ignored);
+  ::close(std::exchange(lock_, -1));
 }
 
 }  // namespace lightwell

@@ -18,17 +18,25 @@ namespace lightwell {
 // source: Fowler, Noll, Vo, FNV-1a of 64 bits
 std::uint64_t fnv1a(std::string_view text, std::uint64_t hash = 0xcbf29ce484222325u);
 
+// What a build comes from, as text.
+struct FieldOrigin {
+  std::string program;  // one line: a program that has another one may give the same take other numbers
+  std::string take;     // pictures, places and options
+  [[nodiscard]] std::string text() const;
+};
+
 // What a build has done so far, in a folder that the next build of the same take goes on with: sorted samples
 // (field/sample_store.h) and, from time to time, the running sums. Every file carries the mark of what it comes from
 // and checksums; what does not fit or is not whole counts as not there.
 class FieldState {
  public:
-  enum class Found { nothing, same, other };
+  enum class Found { nothing, same, other_take, other_program };
 
-  // folder/name, made where absent, emptied where it comes from anything else than made_from, locked against another build
-  // at the same time (failed). An empty name: a new folder that goes with this object. folder: exists.
+  // folder/name, made where absent, emptied where it comes from anything else than made_from, locked by rank 0 against
+  // another build at the same time (failed) while this lives. What is there and was not left by a build, or is a link, is
+  // not touched (failed). An empty name: a new folder that goes with this object. folder: exists.
   static Result<FieldState> open(const std::filesystem::path& folder, const std::string& name,
-                                 const std::string& made_from, FieldRanks& ranks);
+                                 const FieldOrigin& made_from, FieldRanks& ranks);
   FieldState(FieldState&& other) noexcept;
   FieldState& operator=(FieldState&&) = delete;
   ~FieldState();
@@ -48,12 +56,12 @@ class FieldState {
   // Into sums of the same size; nullopt, and sums as they were, where there are none to be trusted.
   [[nodiscard]] std::optional<Progress> load(FieldSums& sums) const;
 
-  // Removes the folder.
+  // Removes the folder and gives up the lock: on rank 0, who has it. Nothing is left to do the second time.
   void remove();
 
  private:
   FieldState(std::filesystem::path folder, bool kept) : folder_(std::move(folder)), kept_(kept) {}
-  Status prepare(const std::string& made_from);
+  Status prepare(const FieldOrigin& made_from);
   std::filesystem::path folder_;
   bool kept_;
   std::uint64_t mark_ = 0;

@@ -143,6 +143,34 @@ TEST_F(FieldRanksTest, AnErrorIsOneLineWithItsExitCode) {
   EXPECT_FALSE(std::filesystem::exists(path("f.vdb.part")));
 }
 
+TEST_F(FieldRanksTest, RanksOfDifferentTakesAreOneLineAndNoWait) {
+  const auto list = [&](const std::string& name, int probes, double x) {
+    std::ofstream text(path(name));
+    text << "x,y,z,file\n";
+    for (int i = 0; i < probes; ++i)
+      text << x + i % 3 << "," << i << "," << i % 5 << ",p" << i % 60 << ".hdr.exr\n";
+  };
+  list("few.csv", 30, 0);
+  list("many.csv", 200, 0);
+  list("moved.csv", 30, 1);
+  const auto both = [&](const std::string& first, const std::string& second) {
+    auto command = ranks(1, build("f.vdb", first));
+    const auto other = build("f.vdb", second);
+    command.insert(command.end(), {":", "-n", "1"});
+    command.insert(command.end(), other.begin(), other.end());
+    return run(command);
+  };
+  const auto expect_refused = [&](const ProcessResult& result, const std::string& why) {
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_EQ(lines(result.err, "lightwell: "), 1u) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(why));
+    EXPECT_FALSE(std::filesystem::exists(path("f.vdb.part")));
+  };
+  expect_refused(both("few.csv", "many.csv"),
+                 "rank 1 has 200 probes, rank 0 has 30, allowed: the same on all ranks");
+  expect_refused(both("few.csv", "moved.csv"), "rank 1 has other places, pictures, frames");
+}
+
 TEST_F(FieldRanksTest, ARankThatDiesEndsTheJobAndTheNextGoesOn) {
   ASSERT_EQ(run(build("alone.vdb")).exit_code, 0);
   for (const std::size_t victim : {0u, 1u}) {

@@ -5,12 +5,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <thread>
 
 #include "field/field_builder.h"
 #include "field/sample_store.h"
+#include "interface/atomic_file.h"
 #include "tests/support/analytic_fields.h"
 #include "tests/support/temporary_folder.h"
 
@@ -70,7 +73,7 @@ class InterruptedBuild : public testing::Test {
     ASSERT_TRUE(build);
     EXPECT_EQ(build->field.radiance, expected.radiance);
     EXPECT_EQ(build->field.confidence, expected.confidence);
-    remove_state(options_);
+    build->state->remove();
     EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
   }
   [[nodiscard]] std::filesystem::path state() const { return folder_.path() / "f.vdb.part"; }
@@ -123,8 +126,89 @@ TEST_F(InterruptedBuild, IsNotWrittenByTwo) {
     EXPECT_THAT(second.error().message, testing::HasSubstr("f.vdb.part: another build is writing here"));
     refused = true;
   });
-  EXPECT_TRUE(first);
+  ASSERT_TRUE(first);
   EXPECT_TRUE(refused);
+  // Its field may not be written yet.
+  const auto early = build_field(take_, options_);
+  ASSERT_FALSE(early);
+  EXPECT_THAT(early.error().message, testing::HasSubstr("another build is writing here"));
+  first->state->remove();
+  const auto next = build_field(take_, options_);
+  ASSERT_TRUE(next) << next.error().message;
+  // The first one's end takes nothing from it.
+  first->state->remove();
+  EXPECT_TRUE(std::filesystem::exists(state() / "sums"));
+}
+
+TEST_F(InterruptedBuild, OfAnotherVersionIsNotGoneOnWith) {
+  const LightField expected = whole();
+  stop_after(450);
+  std::string text = *read_text_file(state() / "made_from.txt");
+  const std::size_t line = text.find('\n');
+  EXPECT_THAT(text.substr(0, line), testing::HasSubstr(" numerics "));
+  std::ofstream(state() / "made_from.txt") << "lightwell.field-state/1 numerics 0" << text.substr(line);
+  expect_the_same(expected);
+  EXPECT_THAT(remarks_, testing::HasSubstr("f.vdb.part: was of another version of this program"));
+  EXPECT_EQ(pictures_, 201);  // each of them again, and the first tells the size
+}
+
+// Builds that begin while others end: the lock that is taken is the one that stands in the folder.
+TEST(FieldState, BelongsToOneAtATimeThroughManyRemovals) {
+  const test::TemporaryFolder folder;
+  std::atomic<int> owners = 0, turns = 0, wrong = 0;
+  const auto take_turns = [&] {
+    FieldRanks alone;
+    while (turns < 400) {
+      auto state = FieldState::open(folder.path(), "f.part", {"program", "take"}, alone);
+      if (!state) {
+        if (state.error().message.find("another build is writing here") == std::string::npos) {
+          ADD_FAILURE() << state.error().message;
+          ++wrong;
+        }
+        continue;
+      }
+      if (owners++ != 0) ++wrong;
+      std::ofstream(state->folder() / "samples-0") << "light";
+      if (!std::filesystem::exists(state->folder() / "made_from.txt")) ++wrong;
+      if (--owners != 0) ++wrong;
+      ++turns;
+      state->remove();
+    }
+  };
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < 4; ++i) threads.emplace_back(take_turns);
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+// What has the name of a state is the user's unless a build has left it.
+TEST_F(InterruptedBuild, TouchesNothingThatIsNoneOfABuild) {
+  const auto refused = [&] {
+    const auto build = build_field(take_, options_);
+    ASSERT_FALSE(build);
+    EXPECT_EQ(build.error().kind, ErrorKind::failed);
+    EXPECT_THAT(build.error().message,
+                testing::HasSubstr("f.vdb.part: is not the folder of an interrupted build"));
+  };
+  std::filesystem::create_directory(state());
+  std::ofstream(state() / "thesis.txt") << "years";
+  refused();
+  EXPECT_EQ(read_text_file(state() / "thesis.txt").value(), "years");
+  EXPECT_FALSE(std::filesystem::exists(state() / "lock"));
+  // Behind a link: even what a build has left.
+  const std::filesystem::path elsewhere = folder_.path() / "elsewhere";
+  std::filesystem::remove_all(state());
+  stop_after(450);
+  std::filesystem::rename(state(), elsewhere);
+  std::filesystem::create_directory_symlink(elsewhere, state());
+  refused();
+  EXPECT_TRUE(std::filesystem::exists(elsewhere / "sums"));
+  std::filesystem::remove(state());
+  std::ofstream(state()) << "a file";
+  refused();
+  EXPECT_EQ(read_text_file(state()).value(), "a file");
 }
 
 TEST_F(InterruptedBuild, LeavesNothingWhereAPictureIsBad) {
