@@ -41,7 +41,10 @@ void print(const RecordOptions& options, const Recorded& recorded,
       json["poses"] = {{"file", poses->file},
                        {"poses", poses->stats.poses},
                        {"malformed", poses->stats.malformed},
-                       {"out_of_order", poses->stats.out_of_order}};
+                       {"out_of_order", poses->stats.out_of_order},
+                       {"clock_steps", poses->stats.clock_steps},
+                       {"other_cameras", poses->stats.other_cameras},
+                       {"longest_silence_s", poses->stats.longest_silence_s}};
     std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
     return;
   }
@@ -53,42 +56,73 @@ void print(const RecordOptions& options, const Recorded& recorded,
     std::printf("%s: %llu poses\n", poses->file.c_str(), static_cast<unsigned long long>(poses->stats.poses));
 }
 
-Result<Recorded> record(const RecordOptions& options) {
-  return options.source.empty() ? record_through_daemon(options, interrupted)
-                                : record_from_source(options, interrupted);
+// take_exists: one that the poses belong to, whole or not.
+Result<Recorded> record(const RecordOptions& options, bool& take_exists) {
+  auto recorded = options.source.empty() ? record_through_daemon(options, interrupted, take_exists)
+                                         : record_from_source(options, interrupted);
+  std::error_code ignored;
+  take_exists = take_exists || recorded || std::filesystem::exists(options.out, ignored);
+  return recorded;
 }
 
 void complain(const std::string& what) {
   std::fprintf(stderr, "lightwell: %s\n", printable(what).c_str());
 }
 
+// What its recorder did not say as it happened.
+void complain_about(const PoseRecorder::Stats& stats) {
+  constexpr double kSilence_s = 1;
+  if (stats.malformed > 0)
+    complain(std::to_string(stats.malformed) +
+             " packets of the tracker were malformed and left out, the first: " + *stats.first_malformed);
+  if (stats.out_of_order > 0)
+    complain(std::to_string(stats.out_of_order) +
+             " poses were left out: no later than one before them, by their arrival or the tracker's clock");
+  if (stats.poses > 0 && stats.silence_at_end_s > kSilence_s) {
+    char text[120];
+    std::snprintf(text, sizeof text, "the tracker was silent for the last %.1f s: frames there have no pose",
+                  stats.silence_at_end_s);
+    complain(text);
+  }
+}
+
+std::string cameras_heard(const PoseRecorder::Stats& stats) {
+  std::string numbers;
+  for (const int number : stats.other_cameras)
+    numbers += (numbers.empty() ? "" : ", ") + std::to_string(number);
+  return numbers.empty() ? ""
+                         : " of camera " + std::to_string(stats.camera.value_or(0)) + ", but of " + numbers;
+}
+
 // The take and, from before its first frame until after its last, what the tracker sends.
 int record_with_tracker(const RecordOptions& options) {
-  const auto tracking = parse_tracking(options.tracking);
+  auto tracking = parse_tracking(options.tracking);
   if (!tracking) return fail(tracking.error());
+  tracking->camera = options.tracking_camera;
   const auto daemon = parse_host_port(options.daemon);
   if (options.source.empty() && (!daemon || !is_loopback(daemon->host)))
     return fail(usage("--tracking with --daemon " + options.daemon +
                       ": allowed a daemon on this machine, whose clock stamps the poses too"));
   RecordedPoses poses{poses_beside(options.out).string(), {}};
-  auto recorder = PoseRecorder::start(*tracking, poses.file);
+  auto recorder = PoseRecorder::start(*tracking, poses.file, complain);
   if (!recorder) return fail(recorder.error());
-  const auto recorded = record(options);
+  bool take_exists = false;
+  const auto recorded = record(options, take_exists);
   const Status written = (*recorder)->stop();
   poses.stats = (*recorder)->stats();
-  std::error_code ignored;
-  if (poses.stats.poses == 0 || (!recorded && !std::filesystem::exists(options.out, ignored)))
-    std::filesystem::remove(poses.file, ignored);
-  if (!recorded) return fail(recorded.error());
-  if (poses.stats.malformed > 0)
-    complain(
-        std::to_string(poses.stats.malformed) +
-        " packets of the tracker were malformed and left out, the first: " + *poses.stats.first_malformed);
+  const Status kept = take_exists && poses.stats.poses > 0 ? (*recorder)->keep() : Status();
+  complain_about(poses.stats);
+  if (!recorded) {
+    if (!kept) complain(kept.error().message);
+    return fail(recorded.error());
+  }
   if (poses.stats.poses == 0)
-    return fail({ErrorKind::failed, "--tracking " + options.tracking + ": no pose came; the take " +
-                                        recorded->file.string() + " is without"});
+    return fail({ErrorKind::failed, "--tracking " + options.tracking + ": no pose came" +
+                                        cameras_heard(poses.stats) + "; the take " + recorded->file.string() +
+                                        " is without"});
   print(options, *recorded, poses);
-  return written ? 0 : fail(written.error());
+  if (!written) return fail(written.error());
+  return kept ? 0 : fail(kept.error());
 }
 
 int run(const RecordOptions& options) {
@@ -109,7 +143,8 @@ int run(const RecordOptions& options) {
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
   if (!options.tracking.empty()) return record_with_tracker(options);
-  const auto recorded = record(options);
+  bool take_exists = false;
+  const auto recorded = record(options, take_exists);
   if (!recorded) return fail(recorded.error());
   std::optional<RecordedPoses> known;
   if (recorded->known_poses > 0)
@@ -147,6 +182,13 @@ Command add_record(CLI::App& app) {
       "--tracking", options.tracking,
       "Write what a tracker sends beside the take (take.poses.csv): opentrackio:ADDRESS:PORT or "
       "freed:ADDRESS:PORT, of this machine or a multicast group");
+  command
+      ->add_option("--tracking-camera", options.tracking_camera,
+                   "Which camera to follow where the port hears several: FreeD's id, OpenTrackIO's "
+                   "sourceNumber [the first]")
+      ->check(whole_numbers(0, kMostTrackedCamera))
+      ->needs("--tracking")
+      ->type_name("NUMBER");
   command->add_option("--daemon", options.daemon, "ADDRESS:PORT of the daemon");
   command->add_flag("--json", options.json, "Machine-readable result on stdout");
   return {command, [arguments] {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "interface/recording.h"
@@ -18,6 +19,7 @@ struct RecordOptions {
   std::string calibration;  // folder; empty: what the source brings along
   std::string daemon = "127.0.0.1:8650";
   std::string tracking;  // opentrackio:ADDRESS:PORT or freed:ADDRESS:PORT; empty: no tracker
+  std::optional<int> tracking_camera;
   RecordingCodec codec = RecordingCodec::raw;
   bool json = false;
 };
@@ -31,8 +33,10 @@ struct Recorded {
   std::uint64_t known_poses = 0;  // of a simulated source's frames, in the pose file beside the take
 };
 
-// Both end early, keeping what was recorded, where `interrupted` becomes true.
+// Both end early, keeping what was recorded, where `interrupted` becomes true. began: the daemon has a take of that name,
+// also where this fails later.
 Result<Recorded> record_from_source(const RecordOptions& options, const std::atomic<bool>& interrupted);
-Result<Recorded> record_through_daemon(const RecordOptions& options, const std::atomic<bool>& interrupted);
+Result<Recorded> record_through_daemon(const RecordOptions& options, const std::atomic<bool>& interrupted,
+                                       bool& began);
 
 }  // namespace lightwell::cli

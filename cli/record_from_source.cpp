@@ -91,7 +91,12 @@ class KnownPoses {
         writer_->write({frame.capture_mono_ns, {*frame.probe_position_m, Eigen::Quaterniond::Identity()}});
     if (written_) ++count_;
   }
-  [[nodiscard]] const Status& written() const { return written_; }
+  // With the take they belong to.
+  Status keep() {
+    if (!writer_) return {};
+    const Status kept = writer_->keep();
+    return written_ ? kept : written_;
+  }
   [[nodiscard]] std::uint64_t count() const { return count_; }
 
  private:
@@ -152,10 +157,11 @@ Result<Recorded> record_from_source(const RecordOptions& options, const std::ato
   if (stats.frames == 0) return closed ? failed(options, "nothing recorded") : part.about_out(closed.error());
   // A take whose disk ran full is readable to its last whole cluster: worth more on set than no take.
   if (Status status = part.keep(); !status) return status.error();
+  const Status kept = poses.keep();
   if (!closed)
     return failed(options, "holds " + std::to_string(stats.frames) + " frames only, " +
                                part.about_out(closed.error()).message);
-  if (!poses.written()) return poses.written().error();
+  if (!kept) return kept.error();
   return Recorded{options.out, stats.frames, stats.dropped + skipped, stats.bytes, poses.count()};
 }
 

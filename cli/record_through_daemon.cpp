@@ -77,7 +77,8 @@ Result<std::filesystem::path> bring(const RecordOptions& options, const std::fil
 
 }  // namespace
 
-Result<Recorded> record_through_daemon(const RecordOptions& options, const std::atomic<bool>& interrupted) {
+Result<Recorded> record_through_daemon(const RecordOptions& options, const std::atomic<bool>& interrupted,
+                                       bool& began) {
   if (std::error_code ignored; std::filesystem::exists(std::filesystem::symlink_status(options.out, ignored)))
     return Error{ErrorKind::failed, options.out.string() + ": exists already and is not overwritten"};
   const std::filesystem::path folder = options.out.has_parent_path() ? options.out.parent_path() : ".";
@@ -86,6 +87,7 @@ Result<Recorded> record_through_daemon(const RecordOptions& options, const std::
                  options.out.string() + ": the folder " + folder.string() + " does not exist"};
   const auto started = order(options, "start");
   if (!started) return started.error();
+  began = true;
   wait(options, interrupted);
   const auto stopped = order(options, "stop");
   if (!stopped) return stopped.error();

@@ -51,6 +51,7 @@ Result<FreedPacket> parse_freed(std::span<const std::uint8_t> bytes) {
   }
   FreedPacket packet;
   packet.camera_id = bytes[1];
+  packet.camera.number = bytes[1];
   packet.camera.stage_from_camera = rotation_from_pan_tilt_roll(-angles_deg[0], angles_deg[1], angles_deg[2]);
   for (int i = 0; i < 3; ++i)
     packet.camera.position_m[i] = signed_24(bytes, 11 + 3 * static_cast<std::size_t>(i)) / 64 / 1000;

@@ -131,7 +131,9 @@ Result<Sample> read_sample(const json& root) {
   if (!root.is_object()) return bad("the sample is no object");
   Sample sample;
   // Others are reserved, and to be discarded.
-  if (const auto source = number(root, "sourceNumber", 1, 200); !source) return source.error();
+  const auto source = number(root, "sourceNumber", 1, 200);
+  if (!source) return source.error();
+  if (*source) sample.camera.number = static_cast<int>(**source);
   const auto focal = number_at(root, {"lens"}, "pinholeFocalLength", 0.1, 1e5);
   if (!focal) return focal.error();
   sample.camera.focal_length_mm = *focal;

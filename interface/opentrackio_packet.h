@@ -20,7 +20,8 @@ namespace lightwell {
 // text keys, no tags.
 // A sample's camera: its transforms composed in their order (translation in metres, pan, tilt and roll in degrees,
 // TrackedCamera's frame and right-hand rule, "clockwise around the axis" in the words of the specification), the lens's
-// pinholeFocalLength and static.camera.activeSensorPhysicalDimensions.height in millimetres, timing.sampleTimestamp.
+// pinholeFocalLength and static.camera.activeSensorPhysicalDimensions.height in millimetres, timing.sampleTimestamp,
+// sourceNumber.
 class OpenTrackIoReader {
  public:
   // The camera of a finished sample; nothing: more segments are to come, or the sample tells no pose.

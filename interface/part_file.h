@@ -20,6 +20,8 @@ class PartFile {
   [[nodiscard]] const std::filesystem::path& path() const { return part_; }
   // The error as the caller should see it: with out's name where it has the hidden one.
   [[nodiscard]] Error about_out(Error error) const;
+  // It stays under its hidden name.
+  void leave() { part_.clear(); }
   // Fails where `out` exists, unless overwrite.
   Status keep(bool overwrite = false);
 

@@ -176,12 +176,13 @@ std::filesystem::path poses_beside(const std::filesystem::path& take) {
 }
 
 Result<PoseFileWriter> PoseFileWriter::create(const std::filesystem::path& file, bool with_sample_ns) {
-  std::FILE* stream = std::fopen(file.c_str(), "wex");
+  if (std::error_code ignored; std::filesystem::exists(std::filesystem::symlink_status(file, ignored)))
+    return Error{ErrorKind::failed, file.string() + ": exists already and is not overwritten"};
+  auto part = std::make_unique<PartFile>(file);
+  std::FILE* stream = std::fopen(part->path().c_str(), "we");
   if (stream == nullptr)
-    return Error{ErrorKind::failed, errno == EEXIST
-                                        ? file.string() + ": exists already and is not overwritten"
-                                        : file.string() + ": cannot write: " + std::strerror(errno)};
-  PoseFileWriter writer(file, stream, with_sample_ns);
+    return Error{ErrorKind::failed, file.string() + ": cannot write: " + std::strerror(errno)};
+  PoseFileWriter writer(file, std::move(part), stream, with_sample_ns);
   std::fputs(with_sample_ns ? "time_ns,x,y,z,qx,qy,qz,qw,sample_ns\n" : "time_ns,x,y,z,qx,qy,qz,qw\n",
              stream);
   return writer;
@@ -199,6 +200,15 @@ Status PoseFileWriter::write(const TimedPose& pose, std::optional<std::int64_t> 
       std::fputc('\n', out) == EOF || std::fflush(out) != 0;
   if (!shorter) return {};
   return Error{ErrorKind::failed, file_.string() + ": cannot write: " + std::strerror(errno)};
+}
+
+Status PoseFileWriter::keep() {
+  stream_.reset();
+  Status kept = part_->keep();
+  if (kept) return {};
+  const std::string hidden = part_->path().string();
+  part_->leave();
+  return Error{ErrorKind::failed, kept.error().message + "; the poses are in " + hidden};
 }
 
 }  // namespace lightwell

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "interface/part_file.h"
 #include "lighting/field/pose_track.h"
 #include "lighting/result.h"
 
@@ -39,20 +40,27 @@ Result<PoseFile> parse_poses(std::string_view text, const std::string& file);
 // take.poses.csv of take.mkv.
 std::filesystem::path poses_beside(const std::filesystem::path& take);
 
-// Writes poses as they come, flushed line by line: what was written is whole however the program ends.
+// Writes poses as they come, flushed line by line, under a hidden name beside the file until they are kept: a take that
+// comes to nothing leaves nothing that stands in the way of the next, and where the program is killed all of them are there.
 class PoseFileWriter {
  public:
   // failed: the file exists (it is not overwritten), or cannot be written.
   static Result<PoseFileWriter> create(const std::filesystem::path& file, bool with_sample_ns);
   Status write(const TimedPose& pose, std::optional<std::int64_t> sample_ns = std::nullopt);
+  // Ends it; what is not kept goes away. failed: the file has come to be meanwhile, or cannot be made; the poses stay under
+  // their hidden name, which the message has.
+  Status keep();
+  [[nodiscard]] const std::filesystem::path& hidden() const { return part_->path(); }
 
  private:
   struct Close {
     void operator()(std::FILE* f) const { std::fclose(f); }
   };
-  PoseFileWriter(std::filesystem::path file, std::FILE* stream, bool with_sample_ns)
-      : file_(std::move(file)), stream_(stream), with_sample_ns_(with_sample_ns) {}
+  PoseFileWriter(std::filesystem::path file, std::unique_ptr<PartFile> part, std::FILE* stream,
+                 bool with_sample_ns)
+      : file_(std::move(file)), part_(std::move(part)), stream_(stream), with_sample_ns_(with_sample_ns) {}
   std::filesystem::path file_;
+  std::unique_ptr<PartFile> part_;
   std::unique_ptr<std::FILE, Close> stream_;
   bool with_sample_ns_;
 };

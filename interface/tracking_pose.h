@@ -19,6 +19,7 @@ struct TrackedCamera {
   std::optional<double> focal_length_mm;
   std::optional<double> sensor_height_mm;
   std::optional<std::int64_t> sampled_ns;  // by the tracker's own clock, of any epoch
+  std::optional<int> number;               // of the camera: FreeD's id, OpenTrackIO's sourceNumber
 };
 
 struct PanTiltRoll {

@@ -163,8 +163,19 @@ std::optional<TrackingArrival> TrackingReceiver::next(std::chrono::milliseconds 
   message.msg_controllen = control.size();
   const ssize_t length = ::recvmsg(socket_, &message, 0);
   if (length < 0) return std::nullopt;
-  return TrackingArrival{arrival_mono_ns(message), host_of(sender),
-                         parse(std::span(buffer).first(static_cast<std::size_t>(length)))};
+  TrackingArrival arrival{arrival_mono_ns(message),
+                          host_of(sender),
+                          {},
+                          parse(std::span(buffer).first(static_cast<std::size_t>(length)))};
+  if (arrival.camera && *arrival.camera && (*arrival.camera)->number) {
+    const int number = *(*arrival.camera)->number;
+    if (!options_.camera) options_.camera = number;
+    if (number != *options_.camera) {
+      arrival.other_camera = number;
+      arrival.camera = std::optional<TrackedCamera>();
+    }
+  }
+  return arrival;
 }
 
 }  // namespace lightwell

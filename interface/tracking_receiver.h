@@ -22,7 +22,11 @@ struct TrackingOptions {
   std::optional<double> freed_mm_per_unit;
   // Where the stream does not tell it.
   std::optional<double> sensor_height_mm;
+  // Of several cameras that one port hears the one to follow (TrackedCamera::number). Absent: the first that is heard.
+  std::optional<int> camera;
 };
+
+inline constexpr int kMostTrackedCamera = 255;  // FreeD's; OpenTrackIO has 1 to 200
 
 // "opentrackio:ADDRESS:PORT" or "freed:ADDRESS:PORT"; option: its name for errors. usage: anything else.
 Result<TrackingOptions> parse_tracking(const std::string& text, const std::string& option = "--tracking");
@@ -31,6 +35,7 @@ Result<TrackingOptions> parse_tracking(const std::string& text, const std::strin
 struct TrackingArrival {
   std::int64_t arrived_mono_ns = 0;  // at this machine's network, CLOCK_MONOTONIC
   std::string sender;                // its address
+  std::optional<int> other_camera;   // the number of one that is not followed; `camera` is then nothing
   // As OpenTrackIoReader::take and parse_freed.
   Result<std::optional<TrackedCamera>> camera;
 };
@@ -46,6 +51,8 @@ class TrackingReceiver {
 
   // The next datagram, nothing where none comes in time.
   std::optional<TrackingArrival> next(std::chrono::milliseconds patience = std::chrono::milliseconds(0));
+  // The camera that is followed, once its number is known.
+  [[nodiscard]] std::optional<int> camera() const { return options_.camera; }
   [[nodiscard]] std::uint16_t port() const;  // the one taken, where the options' was 0
 
  private:

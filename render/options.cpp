@@ -175,6 +175,13 @@ Parsed parse_options(int argc, const char* const* argv) {
   app.add_option("--tracking", tracking,
                  "camera pose from a tracker over UDP: opentrackio:ADDRESS:PORT or freed:ADDRESS:PORT, this "
                  "machine's address or a multicast group; stage x, y, z is the scene's x, z, -y");
+  std::optional<int> tracked_camera;
+  app.add_option(
+         "--tracking-camera", tracked_camera,
+         "which camera to follow where the port hears several: FreeD's id, OpenTrackIO's sourceNumber "
+         "[the first]")
+      ->check(whole_numbers(0, kMostTrackedCamera))
+      ->needs("--tracking");
   app.add_option("--sensor-height", sensor_height_mm,
                  "of the tracked camera, for its field of view, where the stream does not tell it")
       ->check(numbers_above_0_to(1e4, "above 0 to 10000 mm"))
@@ -275,6 +282,7 @@ Parsed parse_options(int argc, const char* const* argv) {
     const auto parsed = parse_tracking(tracking);
     if (!parsed) return {std::nullopt, complain(parsed.error().message)};
     options.tracking = *parsed;
+    options.tracking->camera = tracked_camera;
     options.tracking->freed_mm_per_unit = focal_mm_per_unit;
     options.tracking->sensor_height_mm = sensor_height_mm;
     if (focal_mm_per_unit && parsed->protocol != TrackingProtocol::freed)

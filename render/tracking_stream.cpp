@@ -27,6 +27,9 @@ bool TrackingStream::update() {
         say("tracking: " + arrival->camera.error().message + " (from " + arrival->sender + "); ignored");
       continue;
     }
+    if (arrival->other_camera && told_others_.insert(*arrival->other_camera).second)
+      say("tracking: camera " + std::to_string(*arrival->other_camera) + " (from " + arrival->sender +
+          ") is left out: camera " + std::to_string(receiver_.camera().value_or(0)) + " is followed");
     if (!*arrival->camera) continue;
     told_malformed_ = false;
     camera_ = **arrival->camera;

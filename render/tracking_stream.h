@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "interface/tracking_receiver.h"
@@ -34,6 +35,7 @@ class TrackingStream {
   std::chrono::steady_clock::time_point last_;
   std::size_t malformed_ = 0;
   bool told_malformed_ = false;
+  std::set<int> told_others_;  // numbers of cameras that are not followed
   State told_ = State::unknown;
 };
 

@@ -1,9 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <arpa/inet.h>
 #include <gmock/gmock.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <thread>
 
+#include "interface/freed_packet.h"
 #include "interface/pose_file.h"
 #include "interface/recording.h"
 #include "tests/integration/walk/walk_fixture.h"
@@ -98,6 +104,77 @@ TEST_F(RecordWalk, ATakeWithoutATrackerSaysSoAndLeavesNoPoseFile) {
   EXPECT_THAT(recorded.err, HasSubstr("no pose came; the take " + take().string() + " is without"));
   EXPECT_TRUE(std::filesystem::exists(take()));
   EXPECT_FALSE(std::filesystem::exists(poses()));
+}
+
+// A tracker of its own: FreeD messages of one camera, 50 a second, for as long as this lives.
+class FreedCamera {
+ public:
+  FreedCamera(const std::string& port, std::uint8_t id, double x)
+      : thread_([this, port, id, x] {
+          const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+          sockaddr_in to{};
+          to.sin_family = AF_INET;
+          to.sin_port = htons(static_cast<std::uint16_t>(std::stoi(port)));
+          to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+          TrackedCamera camera;
+          camera.position_m.x() = x;
+          const auto bytes = freed_message({id, camera});
+          while (running_) {
+            ::sendto(socket, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+                     sizeof to);
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+          }
+          ::close(socket);
+        }) {}
+  ~FreedCamera() {
+    running_ = false;
+    thread_.join();
+  }
+
+ private:
+  std::atomic<bool> running_ = true;
+  std::thread thread_;
+};
+
+TEST_F(RecordWalk, OfTwoCamerasAtOnePortTheOneThatIsAskedForIsRecordedAndItsEndIsSaid) {
+  const std::string port = own_port();
+  auto four = std::make_unique<FreedCamera>(port, 4, 1.0);
+  const FreedCamera seven(port, 7, -30.0);
+  std::thread end([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    four.reset();
+  });
+  const auto recorded = record({"--seconds", "4", "--source", "simulated:walk", "--tracking",
+                                "freed:127.0.0.1:" + port, "--tracking-camera", "4"});
+  end.join();
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+  EXPECT_THAT(recorded.err, HasSubstr("camera 7 (from 127.0.0.1) is left out: camera 4 is followed"));
+  EXPECT_THAT(recorded.err, HasSubstr("the tracker sends no poses any more"));
+  EXPECT_THAT(recorded.err, HasSubstr("the tracker was silent for the last "));
+  const auto file = read_poses(poses());
+  ASSERT_TRUE(file.ok());
+  for (const TimedPose& pose : file->poses) EXPECT_EQ(pose.pose.position_m.x(), 1);
+  const auto none =
+      run_process(program("lightwell"),
+                  {"record", "--out", (folder_.path() / "none.mkv").string(), "--seconds", "0.5", "--source",
+                   "simulated:walk", "--tracking", "freed:127.0.0.1:" + port, "--tracking-camera", "4"});
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.err, HasSubstr("no pose came of camera 4, but of 7"));
+}
+
+TEST_F(RecordWalk, ATakeThatCameToNothingStandsInNobodysWay) {
+  // A disk that is full before the take's first frame, which has 640 × 480 pixels of two bytes, is written.
+  ChildProcess::Options full;
+  full.file_bytes = 100'000;
+  ChildProcess none({program("lightwell"), "record", "--source", "simulated:walk", "--seconds", "1", "--out",
+                     take().string()},
+                    folder_.path() / "stderr", full);
+  EXPECT_EQ(none.wait_for_end(), 1) << none.stderr_text();
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+    EXPECT_THAT(entry.path().filename().string(), testing::Not(HasSubstr("take"))) << none.stderr_text();
+  const auto again = record({"--seconds", "0.5", "--source", "simulated:walk"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(std::filesystem::exists(poses()));
 }
 
 TEST_F(RecordWalk, APoseFileThatIsThereIsNotOverwritten) {

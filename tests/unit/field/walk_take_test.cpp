@@ -83,6 +83,7 @@ class WalkTakeTest : public testing::Test {
               ->write({kFirst_ns + t + std::llround(kLag_s * 1e9),
                        {place(static_cast<double>(t) / static_cast<double>(kPeriod_ns) / frames), turn}})
               .ok());
+    ASSERT_TRUE(poses->keep().ok());
   }
   [[nodiscard]] std::filesystem::path take() const { return folder_.path() / "walk.mkv"; }
   [[nodiscard]] std::filesystem::path poses() const { return folder_.path() / "some.csv"; }

@@ -73,12 +73,15 @@ TEST(PoseFile, WhatIsWrittenIsReadAndAFileThatIsThereIsKept) {
   {
     auto writer = PoseFileWriter::create(file, false);
     ASSERT_TRUE(writer.ok()) << writer.error().message;
+    EXPECT_EQ(writer->hidden().parent_path(), folder.path());
     for (int i = 0; i < 3; ++i) {
       const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.3 * i, Vec3d(1, 2, 2) / 3));
       ASSERT_TRUE(writer->write({1'000'000'007LL * (i + 1), {{0.1 * i, -7.25, 3}, turn}}).ok());
       // As after a crash: every line is in the file already.
-      EXPECT_EQ(read_poses(file)->poses.size(), static_cast<std::size_t>(i) + 1);
+      EXPECT_EQ(read_poses(writer->hidden())->poses.size(), static_cast<std::size_t>(i) + 1);
     }
+    EXPECT_FALSE(std::filesystem::exists(file));
+    ASSERT_TRUE(writer->keep().ok());
   }
   const auto read = read_poses(file);
   ASSERT_TRUE(read.ok());
@@ -88,6 +91,28 @@ TEST(PoseFile, WhatIsWrittenIsReadAndAFileThatIsThereIsKept) {
   const auto again = PoseFileWriter::create(file, false);
   ASSERT_FALSE(again.ok());
   EXPECT_NE(again.error().message.find("not overwritten"), std::string::npos) << again.error().message;
+}
+
+TEST(PoseFile, WhatIsNotKeptLeavesNothingAndWhatCannotBeKeptIsNotLost) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "take.poses.csv";
+  {
+    auto writer = PoseFileWriter::create(file, false);
+    ASSERT_TRUE(writer->write({1, {}}).ok());
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  std::filesystem::path hidden;
+  {
+    auto writer = PoseFileWriter::create(file, false);
+    ASSERT_TRUE(writer->write({1, {}}).ok());
+    hidden = writer->hidden();
+    ASSERT_TRUE(write_file_atomically(file, "another's").ok());
+    const Status kept = writer->keep();
+    ASSERT_FALSE(kept.ok());
+    EXPECT_NE(kept.error().message.find(hidden.string()), std::string::npos) << kept.error().message;
+  }
+  EXPECT_EQ(read_poses(hidden)->poses.size(), 1u);
+  EXPECT_EQ(*read_text_file(file), "another's");
 }
 
 TEST(PoseFile, TheTrackersOwnClockTakesTheNetworksDelaysOut) {

@@ -76,6 +76,32 @@ TEST(Tracking, TheFreshestPacketIsThePoseAndMalformedOnesChangeNothing) {
   ::close(sender);
 }
 
+TEST(Tracking, OfTwoCamerasAtOnePortOneIsFollowed) {
+  for (const bool first : {true, false}) {
+    TrackingOptions options;
+    options.protocol = TrackingProtocol::freed;
+    options.address = {"127.0.0.1", 0};
+    if (!first) options.camera = 7;
+    auto stream = TrackingStream::open(options);
+    ASSERT_TRUE(stream.ok()) << stream.error().message;
+    const int sender = ::socket(AF_INET, SOCK_DGRAM, 0);
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(stream->port());
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    for (const std::uint8_t id : {3, 7, 3, 7, 9}) {
+      TrackedCamera camera;
+      camera.position_m.x() = id;
+      const auto bytes = freed_message({id, camera});
+      ::sendto(sender, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to);
+    }
+    EXPECT_TRUE(stream->update());
+    EXPECT_DOUBLE_EQ(stream->camera()->position_m.x(), first ? 3 : 7);
+    EXPECT_FALSE(stream->update());
+    ::close(sender);
+  }
+}
+
 TEST(Tracking, APortThatIsTakenIsAFailureThatNamesIt) {
   TrackingOptions options;
   options.address = {"127.0.0.1", 0};
