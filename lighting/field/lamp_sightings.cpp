@@ -187,6 +187,12 @@ double LampFinder::measure(const PolarMap& map, const Rgb& background, LampSight
   // |mean direction| = 1 − ⟨θ²⟩ / 2, and ⟨θ²⟩ = α² / 2 over an even disc.
   lamp.angular_radius_rad = 2 * std::sqrt(std::max(0.0, 1 - moment.norm() / weight));
   lamp.direction = moment.normalized();
+  lamp.surroundings = background;
+  double least = 1;
+  for (const std::uint32_t bin : aperture_)
+    least = std::min(least, lamp.direction.dot(directions_[bin].cast<double>()));
+  const PolarGrid& grid = cells_.grid();  // and the half of a bin
+  lamp.reach_rad = std::acos(std::max(least, -1.0)) + grid.theta_max_rad / grid.rings / 2;
   return weight;
 }
 

@@ -17,6 +17,8 @@ struct LampSighting {
   Vec3d direction = Vec3d::UnitY();                         // its centre of light, unit
   Rgbd illuminance = Rgbd::Zero();                          // lux facing it, above the surroundings
   double angular_radius_rad = 0;                            // of an even disc as wide
+  double reach_rad = 0;                                     // its farthest light from direction
+  Rgb surroundings = Rgb::Zero();                           // radiance that would be there without it
   RadianceHarmonics harmonics = RadianceHarmonics::Zero();  // its part of the map's
   struct Share {
     std::uint32_t cell;

@@ -29,17 +29,23 @@ void disc_bands(double cosine, int degree, double* bands) {
   }
 }
 
-struct Emission {
-  Vec3d direction;  // from the lamp to a probe
-  double weight;
-  Rgbd intensity;
-};
-
 }  // namespace
+
+Rgbd intensity_toward(std::span<const LampEmission> emissions, const Vec3d& direction) {
+  Rgbd sum = Rgbd::Zero();
+  double total = 0;
+  for (const LampEmission& emission : emissions) {
+    const double apart = 1 - direction.dot(emission.direction) + kSameRay;
+    const double weight = emission.weight / (apart * apart);
+    sum += weight * emission.intensity;
+    total += weight;
+  }
+  return sum / total;
+}
 
 void add_near_lamp(const LampTrack& lamp, std::span<const Vec3d> probes, std::span<const double> weights,
                    LightField& field) {
-  std::vector<Emission> emissions;
+  std::vector<LampEmission> emissions;
   for (std::size_t n = 0; n < probes.size(); ++n)
     if (lamp.links[n].known && weights[n] > 0)
       emissions.push_back({(probes[n] - lamp.position).normalized(), weights[n], lamp.links[n].intensity});
@@ -57,16 +63,8 @@ void add_near_lamp(const LampTrack& lamp, std::span<const Vec3d> probes, std::sp
         const Vec3d toward = lamp.position - grid.position(static_cast<int>(i), j, k);
         const double distance = std::max(toward.norm(), 1e-9);
         const Vec3d direction = toward / distance;
-        Rgbd sum = Rgbd::Zero();
-        double total = 0;
-        for (const Emission& emission : emissions) {
-          const double apart = 1 + direction.dot(emission.direction) + kSameRay;
-          const double weight = emission.weight / (apart * apart);
-          sum += weight * emission.intensity;
-          total += weight;
-        }
         const double reach = std::max(distance, least);
-        const Rgbd illuminance = sum * (lamp.weight / (total * reach * reach));
+        const Rgbd illuminance = intensity_toward(emissions, -direction) * (lamp.weight / (reach * reach));
         for (std::size_t c = 0; c < 3; ++c)
           lux[c * row + i] = static_cast<float>(illuminance[static_cast<Eigen::Index>(c)]);
         harmonics(direction, field.degree, y.data());
