@@ -89,7 +89,7 @@ TEST(Tracking, OfTwoCamerasAtOnePortOneIsFollowed) {
     to.sin_family = AF_INET;
     to.sin_port = htons(stream->port());
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    for (const std::uint8_t id : {3, 7, 3, 7, 9}) {
+    for (const std::uint8_t id : std::vector<std::uint8_t>{3, 7, 3, 7, 9}) {
       TrackedCamera camera;
       camera.position_m.x() = id;
       const auto bytes = freed_message({id, camera});
