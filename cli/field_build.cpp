@@ -30,6 +30,7 @@
 #include "interface/option_range.h"
 #include "interface/printable.h"
 #include "interface/same_file.h"
+#include "interface/writable_output.h"
 #include "lighting/field/field_sums.h"
 
 namespace lightwell::cli {
@@ -141,8 +142,11 @@ Status prepare_list(const BuildArguments& o, bool speaks, Prepared& prepared) {
   auto projection = projection_of(o.pictures);
   if (!projection) return projection.error();
   prepared.options.projection = *std::move(projection);
+  if (const Status other = check_output_is_no_input(o.out, {o.pictures.lens}); !other) return other;
   auto list = read_probe_list(o.probes);
   if (!list) return list.error();
+  for (const std::filesystem::path& file : list->files)
+    if (const Status other = check_output_is_no_input(o.out, {file}); !other) return other;
   auto origin = origin_of(o.pictures, *list);
   if (!origin) return origin.error();
   prepared.options.made_from = *std::move(origin);
@@ -153,6 +157,7 @@ Status prepare_list(const BuildArguments& o, bool speaks, Prepared& prepared) {
 // From a recording and the poses beside it.
 Status prepare_walk(const BuildArguments& o, bool speaks, Prepared& prepared) {
   if (const Status none = check_no_picture_options(o.pictures); !none) return none;
+  if (const Status other = check_output_is_no_walk(o.out, o.probes, o.walk); !other) return other;
   const FieldBuildOptions& options = prepared.options;
   const int cells =
       options.directions > 0 ? options.directions : direction_count_for(options.grid.longest_side());
@@ -175,6 +180,8 @@ Result<Prepared> prepare(const BuildArguments& o, FieldRanks& ranks) {
   if (o.method != "best" && o.method != "low")
     return usage("--method is " + o.method + ", allowed: best, low");
   options.method = o.method == "best" ? FieldMethod::best : FieldMethod::low;
+  if (o.directions == 1)
+    return usage("--directions is 1, allowed: 0, or 2 to " + std::to_string(kMostDirections));
   options.degree = o.degree;
   options.directions = o.directions;
   options.threads =
@@ -182,6 +189,7 @@ Result<Prepared> prepare(const BuildArguments& o, FieldRanks& ranks) {
   if (const Status enough = check_memory(o, *grid, ranks.on_this_machine()); !enough) return enough.error();
   if (const Status other = check_output_is_no_input(o.out, {o.probes}); !other) return other.error();
   const bool speaks = ranks.rank() == 0;
+  if (const Status writes = speaks ? check_can_write(o.out) : Status(); !writes) return writes.error();
   const Status inputs =
       is_take(o.probes) ? prepare_walk(o, speaks, prepared) : prepare_list(o, speaks, prepared);
   if (!inputs) return inputs.error();
@@ -283,7 +291,7 @@ Command add_field_build(CLI::App& field) {
   add_walk_options(*command, o->walk);
   command
       ->add_option("--directions", o->directions,
-                   "Into how many directions to cut the sphere; 0: as many as the grid needs")
+                   "Into how many directions to cut the sphere, 2 or more; 0: as many as the grid needs")
       ->check(whole_numbers(0, kMostDirections))
       ->capture_default_str();
   command

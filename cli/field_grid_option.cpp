@@ -4,11 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "cli/command.h"
 #include "cli/number_list.h"
 
 namespace lightwell::cli {
+namespace {
+
+constexpr double kFinestCell_m = 1e-6;  // of 100 km doubles still tell a ten-thousandth of it
+
+}  // namespace
 
 Result<FieldGrid> field_grid(const std::string& given_size, const std::string& given_bounds) {
   FieldGrid grid;
@@ -29,6 +35,11 @@ Result<FieldGrid> field_grid(const std::string& given_size, const std::string& g
         !(std::abs(grid.high[axis]) <= 1e5))
       return usage("--bounds is " + given_bounds +
                    ", allowed: X0 < X1, Y0 < Y1, Z0 < Z1, -100000 to 100000 metres");
+  }
+  if (const double cell = grid.cell().minCoeff(); !(cell >= kFinestCell_m)) {
+    char text[100];
+    std::snprintf(text, sizeof text, ": points %g metres apart, allowed: %g or more", cell, kFinestCell_m);
+    return usage("--bounds is " + given_bounds + text);
   }
   if (grid.points() > kMostFieldPoints)
     return usage("--grid is " + given_size + ": " + std::to_string(grid.points()) +

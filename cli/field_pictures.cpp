@@ -79,9 +79,11 @@ Result<std::string> origin_of(const PictureArguments& o, const ProbeList& list) 
   std::uint64_t mark = fnv1a(lens);
   char text[200];
   for (std::size_t i = 0; i < list.files.size(); ++i) {
-    std::error_code absent;  // is said when it is read
-    const auto size = std::filesystem::file_size(list.files[i], absent);
-    const auto time = std::filesystem::last_write_time(list.files[i], absent).time_since_epoch().count();
+    std::error_code error, ignored;
+    const auto time = std::filesystem::last_write_time(list.files[i], error).time_since_epoch().count();
+    if (error)
+      return Error{ErrorKind::bad_input, list.files[i].string() + ": cannot read: " + error.message()};
+    const auto size = std::filesystem::file_size(list.files[i], ignored);  // none of a pipe
     const Vec3d& at = list.positions[i];
     std::snprintf(text, sizeof text, "%.17g %.17g %.17g %ju %jd ", at.x(), at.y(), at.z(),
                   static_cast<std::uintmax_t>(size), static_cast<std::intmax_t>(time));

@@ -9,7 +9,9 @@
 #include "cli/command.h"
 #include "cli/progress.h"
 #include "interface/option_range.h"
+#include "interface/pose_file.h"
 #include "interface/printable.h"
+#include "interface/same_file.h"
 
 namespace lightwell::cli {
 
@@ -63,6 +65,16 @@ bool is_take(const std::filesystem::path& file) {
   char head[4] = {};
   stream.read(head, sizeof head);
   return std::string_view(head, sizeof head) == "\x1A\x45\xDF\xA3";  // EBML
+}
+
+Status check_output_is_no_walk(const std::filesystem::path& output, const std::filesystem::path& take,
+                               const WalkArguments& o) {
+  const auto poses = o.poses.empty() ? poses_beside(take) : std::filesystem::path(o.poses);
+  if (const Status other = check_output_is_no_input(output, {poses}); !other || o.calibration.empty())
+    return other;
+  const std::filesystem::path folder(o.calibration);
+  return check_output_is_no_input(output,
+                                  {folder / "response.json", folder / "lens.json", folder / "flat.json"});
 }
 
 Result<std::shared_ptr<WalkTake>> open_walk(const std::filesystem::path& take, const WalkArguments& o,

@@ -27,6 +27,9 @@ Status check_no_walk_options(const WalkArguments& arguments);
 // A Matroska file, by its first bytes.
 bool is_take(const std::filesystem::path& file);
 
+// usage where the output is the take's pose file, or one of the calibration's.
+Status check_output_is_no_walk(const std::filesystem::path& output, const std::filesystem::path& take,
+                               const WalkArguments& arguments);
 Result<std::shared_ptr<WalkTake>> open_walk(const std::filesystem::path& take, const WalkArguments& arguments,
                                             const FieldGrid& grid, int directions, bool speaks);
 

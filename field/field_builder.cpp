@@ -369,8 +369,9 @@ Result<FieldBuild> build_field(const ProbeTake& take, const FieldBuildOptions& o
   build.directions = static_cast<int>(bins->directions().size());
   build.coverage = bins->coverage();
   if (const Status sorted = builder.sort_pictures(first->width, first->height); !sorted) {
-    // Nothing is lost that was not quick to get; a bad picture's take will be another one.
-    if (ranks.rank() == 0) state->remove();
+    // What was sorted now was quick to get, and a bad picture's take will be another one. What stood there before may be
+    // hours of sums, and a picture that is gone may come back.
+    if (ranks.rank() == 0 && state->found() != FieldState::Found::same) state->remove();
     return sorted.error();
   }
   if (const Status summed = builder.sum_directions(build); !summed) return summed.error();

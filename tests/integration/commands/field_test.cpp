@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "interface/atomic_file.h"
 #include "tests/integration/commands/command_fixture.h"
 #include "tests/support/analytic_fields.h"
 
@@ -42,6 +44,7 @@ class FieldCommandTest : public CommandTest {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return lightwell(arguments);
   }
+  static auto lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
   void expect_refused(const ProcessResult& result, int code, const std::string& text) const {
     EXPECT_EQ(result.exit_code, code) << result.err;
     EXPECT_THAT(result.err, HasSubstr(text));
@@ -108,12 +111,55 @@ TEST_F(FieldCommandTest, BadInputIsOneLineAndLeavesNothing) {
   const auto huge = lightwell({"field", "build", path("probes.csv"), "--grid", "513,512,512", "--bounds",
                                "0,0,0,1,1,1", "--out", path("f.vdb")});
   expect_refused(huge, 2, "--grid is 513,512,512: 134479872 points, allowed: up to 134217728, 512 cubed");
+  const auto thin = lightwell({"field", "build", path("probes.csv"), "--grid", "5,5,5", "--bounds",
+                               "0,0,0,1,1,1e-9", "--out", path("f.vdb")});
+  expect_refused(thin, 2, "--bounds is 0,0,0,1,1,1e-9: points 2.5e-10 metres apart, allowed: 1e-06 or more");
+  const auto one = lightwell({"field", "build", path("probes.csv"), "--grid", "5,5,5", "--bounds",
+                              "0,0,0,1,1,1", "--directions", "1", "--out", path("f.vdb")});
+  expect_refused(one, 2, "--directions is 1, allowed: 0, or 2 to 1048576");
   expect_refused(build({"--out", path("f.vdb"), "--method", "nearest"}), 2, "allowed: best, low");
   expect_refused(build({"--out", path("f.vdb"), "--projection", "fisheye"}), 2, "--lens");
   expect_refused(build({"--out", path("absent/f.vdb")}), 1, "absent");
   const auto flat = lightwell({"field", "build", path("probes.csv"), "--grid", "4,4,4", "--bounds",
                                "0,0,0,1,0,1", "--out", path("f.vdb")});
   expect_refused(flat, 2, "--bounds is 0,0,0,1,0,1, allowed: X0 < X1");
+}
+
+// Before any work: what is refused here would cost hours else, or the pictures.
+TEST_F(FieldCommandTest, RefusesAnOutputThatCannotBeWrittenOrIsAnInput) {
+  const auto bytes = [&](const std::string& name) { return read_text_file(path(name)).value(); };
+  const std::string picture = bytes("p7.exr"), list = bytes("probes.csv");
+  std::filesystem::create_symlink(path("p7.exr"), path("link.exr"));
+  for (const std::string name : {"p7.exr", "link.exr"}) {
+    const auto result = build({"--out", path(name)});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr("p7.exr, which is not overwritten"));
+  }
+  EXPECT_EQ(bytes("p7.exr"), picture);
+  EXPECT_EQ(build({"--out", path("probes.csv")}).exit_code, 2);
+  EXPECT_EQ(bytes("probes.csv"), list);
+  std::filesystem::create_directory(path("folder"));
+  // No picture is there: they are not asked for.
+  std::ofstream(path("gone.csv")) << "x,y,z,file\n0,0,0,gone.exr\n";
+  const auto result = build({"--out", path("folder")}, "gone.csv");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("folder: cannot write: Is a directory"));
+  EXPECT_EQ(lines(result.err), 1) << result.err;
+  EXPECT_EQ(lines(build({"--out", path("absent/f.vdb")}, "gone.csv").err), 1);
+}
+
+TEST_F(FieldCommandTest, APictureThatIsGoneLeavesWhatIsDone) {
+  const std::filesystem::path state = path("f.vdb.part");
+  std::filesystem::create_directory(state);
+  const std::string text = "lightwell.field-state/1 numerics 1\nof another take\n";
+  std::ofstream(state / "made_from.txt") << text;
+  std::filesystem::rename(path("p50.exr"), path("away.exr"));
+  expect_refused(build({"--out", path("f.vdb")}), 3, "p50.exr: cannot read: No such file or directory");
+  EXPECT_EQ(read_text_file(state / "made_from.txt").value(), text);
+  std::filesystem::rename(path("away.exr"), path("p50.exr"));
+  const auto built = build({"--out", path("f.vdb")});
+  EXPECT_EQ(built.exit_code, 0) << built.err;
+  EXPECT_THAT(built.err, HasSubstr("f.vdb.part: was of other pictures or options, begins anew"));
 }
 
 TEST_F(FieldCommandTest, SaysWhatOneProbeDoesNotDetermine) {
