@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
 #include <sched.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -81,6 +83,14 @@ unsigned default_threads(int ranks) {
   return std::clamp(all / static_cast<unsigned>(ranks), 1u, std::max(1u, allowed));
 }
 
+// A field that goes there has it for itself.
+bool is_standard_output(const std::filesystem::path& out) {
+  struct stat there {
+  }, standard{};
+  return ::stat(out.c_str(), &there) == 0 && ::fstat(STDOUT_FILENO, &standard) == 0 &&
+         !S_ISREG(there.st_mode) && there.st_dev == standard.st_dev && there.st_ino == standard.st_ino;
+}
+
 bool is_dark(const LightField& field) {
   return std::all_of(field.radiance.begin(), field.radiance.end(), [](float value) { return value == 0; });
 }
@@ -100,6 +110,7 @@ void report(const BuildArguments& o, const Prepared& prepared, const FieldBuild&
   const auto points = field.grid.points();
   const std::size_t probes = prepared.take.positions.size();
   if (!o.json) {
+    if (is_standard_output(o.out)) return;
     if (prepared.walk) print_walk(*prepared.walk);
     std::printf("probes            %zu, %d directions, %.1f %% of the sphere seen\n", probes,
                 build.directions, 100 * build.coverage);
@@ -189,6 +200,8 @@ Result<Prepared> prepare(const BuildArguments& o, FieldRanks& ranks) {
   if (const Status enough = check_memory(o, *grid, ranks.on_this_machine()); !enough) return enough.error();
   if (const Status other = check_output_is_no_input(o.out, {o.probes}); !other) return other.error();
   const bool speaks = ranks.rank() == 0;
+  if (o.json && is_standard_output(o.out))
+    return usage("--out " + o.out + " is where --json writes, too, allowed: a file, or no --json");
   if (const Status writes = speaks ? check_can_write(o.out) : Status(); !writes) return writes.error();
   const Status inputs =
       is_take(o.probes) ? prepare_walk(o, speaks, prepared) : prepare_list(o, speaks, prepared);

@@ -3,8 +3,12 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
+#include <string>
 
 #include "cli/command.h"
 #include "field/launched_ranks.h"
@@ -50,7 +54,15 @@ int run(int argc, char** argv) {
 // lightwell COMMAND …: parse, run the chosen command, and turn every failure into one line and an exit code.
 int main(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    const int code = run(argc, argv);
+    // A result that was not written whole must not look like one.
+    errno = 0;
+    if (code == 0 && (std::fflush(stdout) != 0 || std::ferror(stdout) != 0))
+      return lightwell::cli::fail(
+          {lightwell::ErrorKind::failed,
+           std::string("standard output: cannot write") +
+               (errno != 0 ? std::string(": ") + std::strerror(errno) : std::string())});
+    return code;
   } catch (const std::bad_alloc&) {
     return lightwell::cli::fail({lightwell::ErrorKind::failed, "not enough memory"});
   } catch (const std::exception& error) {

@@ -148,6 +148,28 @@ TEST_F(FieldCommandTest, RefusesAnOutputThatCannotBeWrittenOrIsAnInput) {
   EXPECT_EQ(lines(build({"--out", path("absent/f.vdb")}, "gone.csv").err), 1);
 }
 
+TEST_F(FieldCommandTest, SaysWhereStandardOutputIsFullOrAskedForTwice) {
+  const std::string program = LIGHTWELL_BIN_DIR "/lightwell";
+  ASSERT_EQ(build({"--out", path("f.vdb")}).exit_code, 0);
+  const auto full = run_process(
+      "/bin/sh", {"-c", program + " field query " + path("f.vdb") + " --at 0.5,0.5,0.5 --json >/dev/full"});
+  EXPECT_EQ(full.exit_code, 1);
+  EXPECT_EQ(full.err, "lightwell: standard output: cannot write: No space left on device\n");
+  // The field, and nothing behind it.
+  const auto piped = run_process(
+      "/bin/sh", {"-c", program + " field build " + path("probes.csv") +
+                            " --grid 5,4,5 --bounds 0,0,0,1,1,1 --directions 600 --out /dev/stdout | cat >" +
+                            path("piped.vdb")});
+  EXPECT_EQ(piped.exit_code, 0) << piped.err;
+  EXPECT_EQ(std::filesystem::file_size(path("piped.vdb")), std::filesystem::file_size(path("f.vdb")));
+  const auto twice = run_process(
+      "/bin/sh",
+      {"-c", program + " field build " + path("probes.csv") +
+                 " --grid 5,4,5 --bounds 0,0,0,1,1,1 --out /dev/stdout --json | cat >" + path("none.vdb")});
+  EXPECT_EQ(std::filesystem::file_size(path("none.vdb")), 0u);
+  EXPECT_THAT(twice.err, HasSubstr("--out /dev/stdout is where --json writes, too"));
+}
+
 TEST_F(FieldCommandTest, APictureThatIsGoneLeavesWhatIsDone) {
   const std::filesystem::path state = path("f.vdb.part");
   std::filesystem::create_directory(state);
