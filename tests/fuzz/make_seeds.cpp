@@ -275,6 +275,26 @@ void tracking(const std::filesystem::path& folder) {
   }
 }
 
+void rigs(const std::filesystem::path& folder) {
+  const std::string planes =
+      "schema = \"lightwell.rig/1\"\nname = \"Lamp\"\n[sampling]\nspacing_m = 0.005\nfilter = \"finite\"\n"
+      "peak_transmission = 0.8\nmoves = \"lamp\"\nz_m = 0.01\n[measurement]\ndistance_m = 0.1\n"
+      "low_m = [-0.2, -0.2]\nhigh_m = [0.2, 0.2]\npixels = [300, 300]\n";
+  std::string marks =
+      planes +
+      "[camera]\nunit = \"codes\"\ncalibration = \"camera\"\nscreen_reflectance = 0.9\n"
+      "exposure_us = 20000\ndark = \"dark.exr\"\ndark_exposure_us = 1000\nmost_saturated = 0\n"
+      "most_negative = 0.1\nmost_mark_error_px = 1\n";
+  for (const char* at : {"[-0.2, -0.2]", "[0.2, -0.2]", "[0.2, 0.2]", "[-0.2, 0.2]"})
+    marks += std::string("[[marks]]\npixel = [100.5, 20]\nscreen_m = ") + at + "\n";
+  write(folder / "marks.toml", marks);
+  write(folder / "edges.toml",
+        planes +
+            "[camera]\nunit = \"relative\"\nsaturation = 4.0\n[picture]\n"
+            "first_m = [-0.2, 0.2]\nlast_m = [0.2, -0.2]\n[reference]\nat_m = [0, 0, -1]\n"
+            "toward = [0, 0, 1]\nlux = 120\n");
+}
+
 void sync_protocol(const std::filesystem::path& folder) {
   for (unsigned type = 0; type < 256; ++type) {
     const auto known = static_cast<std::uint8_t>(type);
@@ -301,6 +321,7 @@ int main(int argc, char** argv) {
   patches(folder / "patches");
   photometric(folder / "photometric");
   rays(folder / "ray_file");
+  rigs(folder / "rig");
   imports(folder);
   radiance(folder / "radiance_hdr");
   scenes(folder / "gltf");
