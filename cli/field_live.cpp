@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -86,12 +88,29 @@ nlohmann::ordered_json status_of(const FieldFrame& frame, const LiveSession& ses
   return json;
 }
 
+// A FieldFrame's bounds are 32 bit numbers: points must stay apart.
+Status check_cells(const FieldGrid& grid, const std::string& bounds) {
+  constexpr float kSteps = 4;  // so that a cell is right to an eighth
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto farthest = static_cast<float>(std::max(std::abs(grid.low[axis]), std::abs(grid.high[axis])));
+    const double least_m = kSteps * (std::nextafter(farthest, 1e9f) - farthest);
+    if (grid.cell()[axis] >= least_m) continue;
+    char text[120];
+    std::snprintf(text, sizeof text,
+                  ": cells of %.3g m along %c, allowed so far from the origin: from %.3g m",
+                  grid.cell()[axis], "XYZ"[axis], least_m);
+    return usage("--bounds is " + bounds + text);
+  }
+  return {};
+}
+
 // Reads the options; the session itself is made where all is well.
 Result<std::unique_ptr<LiveSession>> session_of(const LiveArguments& o) {
   const auto grid = field_grid(o.grid, o.bounds);
   if (!grid) return grid.error();
   if (grid->points() > kMostPoints)
     return usage("--grid is " + o.grid + ", allowed: up to " + std::to_string(kMostPoints) + " points");
+  if (const Status apart = check_cells(*grid, o.bounds); !apart) return apart.error();
   std::vector<StageProbe> probes;
   std::vector<Vec3d> places;
   for (const std::string& text : o.probes) {
@@ -144,6 +163,7 @@ int run(const LiveArguments& o) {
   EnvironmentFrame map;
   FieldFrame* frame = nullptr;
   std::string refusal;
+  std::set<std::string> contested;  // that was said
   UpdateTimes times;
   Clock::duration busy{};
   while (interrupted == 0) {
@@ -159,6 +179,12 @@ int run(const LiveArguments& o) {
         refusal = wrong;
         std::fprintf(stderr, "lightwell: a map is refused: %s\n", printable(refusal).c_str());
       }
+      for (const std::string& name : (*reader)->contested())
+        if (contested.insert(name).second)
+          std::fprintf(stderr,
+                       "lightwell: two publish as probe '%s': the first that was heard is followed, until it "
+                       "is silent for 2 s\n",
+                       printable(name).c_str());
       continue;
     }
     // A tick that was missed is left out, not made up for.

@@ -275,6 +275,15 @@ class Builder {
 
 Status check_picture(const LatLongImage& picture, const ProbeProjection& projection,
                      const std::string& name) {
+  if (std::holds_alternative<MirrorBallProbe>(projection)) {
+    constexpr double kSquareWithin = 0.02;  // of a side, as pictures are cropped by hand
+    const double aspect = static_cast<double>(picture.width) / picture.height;
+    if (std::abs(std::log(aspect)) <= kSquareWithin) return {};
+    return Error{ErrorKind::bad_input,
+                 name + ": is " + std::to_string(picture.width) + "x" + std::to_string(picture.height) +
+                     " pixels, allowed for a mirror ball: a square, cropped to the ball (within 2 %)" +
+                     (picture.width == 2 * picture.height ? "; 2:1 is a latitude-longitude image" : "")};
+  }
   const auto* fisheye = std::get_if<FisheyeProbe>(&projection);
   if (fisheye == nullptr) return {};
   const auto [width, height] = fisheye->lens.image_size;

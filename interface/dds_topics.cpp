@@ -10,6 +10,7 @@
 #include <map>
 
 #include "interface/dds_wire.h"
+#include "interface/followed_writers.h"
 
 namespace lightwell {
 namespace {
@@ -143,7 +144,10 @@ struct DdsReader<Message>::Impl {
   std::uint64_t refused = 0;
   std::string refusal;
 
+  FollowedWriters writers{kLiveliness};
+
   bool take_available(Message& message);
+  bool follows(std::string_view from, const dds_sample_info_t& info);
   bool accept(const typename Wire<Message>::Type& wire, const dds_sample_info_t& info, Message& message);
   bool is_repeat(const typename Wire<Message>::Type& wire, std::string_view from) const;
 };
@@ -164,13 +168,23 @@ bool DdsReader<Message>::Impl::is_repeat(const typename Wire<Message>::Type& wir
 }
 
 template <class Message>
+bool DdsReader<Message>::Impl::follows(std::string_view from, const dds_sample_info_t& info) {
+  return writers.follows(from, info.publication_handle, Clock::now(), [this](std::uint64_t writer) {
+    std::array<dds_instance_handle_t, 64> there{};
+    const auto count = dds_get_matched_publications(reader.get(), there.data(), there.size());
+    const auto end = there.begin() + std::clamp<std::ptrdiff_t>(count, 0, std::ssize(there));
+    return std::find(there.begin(), end, writer) != end;
+  });
+}
+
+template <class Message>
 bool DdsReader<Message>::Impl::accept(const typename Wire<Message>::Type& wire, const dds_sample_info_t& info,
                                       Message& message) {
   const std::string_view from(wire.probe, ::strnlen(wire.probe, sizeof wire.probe));
   // A probe that is gone makes room for another; its samples without data carry the key alone.
   if (info.instance_state != DDS_IST_ALIVE && any_probe && from == probe) probe.clear();
   if (!info.valid_data || (!every_probe && !probe.empty() && from != probe)) return false;
-  if (is_repeat(wire, from)) return false;
+  if (!follows(from, info) || is_repeat(wire, from)) return false;
   if (std::string wrong = from_wire(wire, message); !wrong.empty()) {
     ++refused;
     refusal = std::move(wrong);
@@ -254,6 +268,10 @@ std::optional<std::chrono::nanoseconds> DdsReader<Message>::age() const {
   return Clock::now() - impl_->arrived;
 }
 
+template <class Message>
+const std::set<std::string, std::less<>>& DdsReader<Message>::contested() const {
+  return impl_->writers.contested();
+}
 template <class Message>
 const std::string& DdsReader<Message>::probe() const {
   return impl_->probe;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "interface/dds_domain.h"
@@ -80,6 +81,9 @@ class DdsReader {
   [[nodiscard]] int writers() const;
   // Time since the last message that was taken arrived; empty before the first.
   [[nodiscard]] std::optional<std::chrono::nanoseconds> age() const;
+  // Names under which more than one publishes (interface/followed_writers.h): one is followed, what the others send is
+  // left out.
+  [[nodiscard]] const std::set<std::string, std::less<>>& contested() const;
   // The probe that is listened to; empty before the first message where none was asked for.
   [[nodiscard]] const std::string& probe() const;
   // Malformed messages so far, and what was wrong with the last, in words.

@@ -23,6 +23,10 @@ class LiveFieldLight final : public LightSource {
     // The words are a handful, whatever comes: a sender that goes on sending them is not said again.
     if (reader_->refused() > 0 && said_.insert(reader_->refusal()).second)
       say("a light field is refused: " + reader_->refusal());
+    for (const std::string& name : reader_->contested())
+      if (said_.insert(name).second)
+        say("two publish a light field as '" + name +
+            "': the first that was heard is shown, until it is silent for 2 s");
     return arrived;
   }
 

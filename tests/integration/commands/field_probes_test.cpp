@@ -94,6 +94,18 @@ TEST_F(FieldProbesTest, AMirrorBallHasNoSingleViewpointWhichItsRadiusAndCameraTe
   EXPECT_GT(neither, radius_alone) << "as if all rays met in the ball's centre";
 }
 
+TEST_F(FieldProbesTest, AMirrorBallsPictureIsASquare) {
+  write_probes(3, 96, ball_from_near);
+  LatLongImage image{96, 48, {}};
+  image.pixels.resize(std::size_t{96} * 48, Rgb::Ones());
+  ASSERT_TRUE(write_environment(path("p0.exr"), image));
+  const auto refused = build({"--projection", "mirror-ball"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err,
+              HasSubstr("p0.exr: is 96x48 pixels, allowed for a mirror ball: a square, cropped to "
+                        "the ball (within 2 %); 2:1 is a latitude-longitude image"));
+}
+
 TEST_F(FieldProbesTest, AFisheyeGivesTheUpperHemisphereOfTheField) {
   Calibration calibration;
   calibration.response.model = LinearResponse{};

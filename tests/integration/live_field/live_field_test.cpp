@@ -62,16 +62,16 @@ Eigen::VectorXd truth_at(const Vec3d& at) {
 
 class LiveStage : public testing::Test {
  protected:
-  void start_probe(std::size_t n) {
-    const std::string name = "p" + std::to_string(n);
-    const std::filesystem::path file = folder_.path() / (name + ".toml");
+  void start_probe(std::size_t n) { start_probe(n, "p" + std::to_string(n)); }
+  void start_probe(std::size_t n, const std::string& name) {
+    const std::filesystem::path file = folder_.path() / ("p" + std::to_string(n) + ".toml");
     std::ofstream(file) << "[http]\nlisten = \"127.0.0.1:0\"\n[dds]\ndomain = " << own_domain().domain
                         << "\nenvironment_hz = 30\n[probe]\nname = \"" << name
                         << "\"\n[source]\naddress = \"simulated:stage@" << text_of(kPlaces[n])
                         << "\"\nwidth = 320\nheight = 240\nrate_hz = 5\n";
     daemons_[n] = std::make_unique<ChildProcess>(
         std::vector<std::string>{program("lightwelld"), "--config", file.string()},
-        folder_.path() / (name + ".log"));
+        folder_.path() / ("p" + std::to_string(n) + ".log"));
     ASSERT_TRUE(daemons_[n]->wait_for_line("page: http://")) << daemons_[n]->stderr_text();
   }
   void start_field(std::vector<std::string> more = {}) {
@@ -112,6 +112,15 @@ class LiveStage : public testing::Test {
   std::unique_ptr<FieldReader> reader_ = FieldReader::create(DdsDomain::open(own_domain()).value()).value();
   FieldFrame frame_;
 };
+
+TEST_F(LiveStage, OfTwoDaemonsOfOneNameOneIsFollowedAndItIsSaid) {
+  start_probe(0, "p0");
+  start_field();
+  ASSERT_TRUE(field_->wait_for_line("probe 'p0' is heard")) << field_->stderr_text();
+  start_probe(1, "p0");
+  EXPECT_TRUE(field_->wait_for_line("two publish as probe 'p0': the first that was heard is followed"))
+      << field_->stderr_text();
+}
 
 TEST_F(LiveStage, FieldOfFiveDaemonsIsTheStagesLightBetweenThem) {
   for (std::size_t n = 0; n < kPlaces.size(); ++n) start_probe(n);
@@ -200,6 +209,8 @@ TEST(LiveFieldCommand, WrongOptionsAreUsage) {
   EXPECT_THAT(refused({"--bounds", "0,0,0,1,1,1", "--probe", "a=0,0,0", "--probe", "a=1,0,0"}),
               HasSubstr("each name once"));
   EXPECT_THAT(refused({"--bounds", "0,0,0,1,1,0", "--probe", "a=0,0,0"}), HasSubstr("--bounds"));
+  EXPECT_THAT(refused({"--bounds", "99999,0,0,99999.001,1,1", "--probe", "a=0,0,0", "--grid", "4,4,4"}),
+              HasSubstr("cells of 0.000333 m along X, allowed so far from the origin: from 0.0312 m"));
   EXPECT_THAT(refused({"--bounds", "0,0,0,1,1,1", "--probe", "a=0,0,0", "--grid", "100,100,100"}),
               HasSubstr("262144"));
   EXPECT_THAT(refused({"--bounds", "0,0,0,1,1,1", "--probe", "a=0,0,0", "--rate", "0"}), HasSubstr("--rate"));

@@ -290,6 +290,29 @@ TEST(DdsTopics, ReaderStaysWithTheFirstProbeUntilItIsGone) {
   EXPECT_EQ(any->probe(), "second");
 }
 
+TEST(DdsTopics, OfTwoWritersOfOneNameOneIsReadUntilItIsGone) {
+  for (const bool every : {false, true}) {
+    auto first = EnvironmentWriter::create(domain(), "twice").value();
+    const auto second = EnvironmentWriter::create(domain(), "twice").value();
+    const auto reader = EnvironmentReader::create(domain(), {.every_probe = every}).value();
+    EnvironmentFrame received;
+    ASSERT_TRUE(first->write(example_environment(1, 1)));
+    ASSERT_TRUE(reader->take(received, kPatience));
+    EXPECT_TRUE(reader->contested().empty());
+    ASSERT_TRUE(second->write(example_environment(50, 1)));
+    EXPECT_FALSE(reader->take(received, 50ms));
+    ASSERT_TRUE(first->write(example_environment(2, 1)));
+    ASSERT_TRUE(reader->take(received, kPatience));
+    EXPECT_EQ(received.header.number, 2u);
+    EXPECT_TRUE(reader->contested().contains("twice"));
+    first.reset();
+    ASSERT_TRUE(eventually([&] { return reader->writers() == 1; }));
+    ASSERT_TRUE(second->write(example_environment(51, 1)));
+    ASSERT_TRUE(reader->take(received, kPatience));
+    EXPECT_EQ(received.header.number, 51u);
+  }
+}
+
 TEST(DdsTopics, WriterThatEndsIsGone) {
   auto writer = LightWriter::create(domain(), "probe").value();
   const auto reader = LightReader::create(domain()).value();
