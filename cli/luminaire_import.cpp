@@ -12,6 +12,7 @@
 #include "interface/luminaire_file.h"
 #include "interface/option_range.h"
 #include "interface/photometric_file.h"
+#include "interface/plain_ray_file.h"
 #include "interface/printable.h"
 #include "interface/ray_file.h"
 #include "interface/same_file.h"
@@ -39,8 +40,15 @@ std::string ending_of(const std::filesystem::path& file) {
   return ending;
 }
 
+bool is_ray_file(const std::filesystem::path& file) {
+  const std::string ending = ending_of(file);
+  return ending == ".tm25ray" || ending == ".tm25" || ending == ".csv" || ending == ".txt" ||
+         ending == ".dat";
+}
+
 Result<Imported> import_rays(const ImportArguments& o) {
-  auto file = read_tm25(o.file);
+  const std::string ending = ending_of(o.file);
+  auto file = ending == ".tm25ray" || ending == ".tm25" ? read_tm25(o.file) : read_plain_rays(o.file);
   if (!file) return file.error();
   Imported out;
   out.lamp = bin_rays(file->rays, o.rays);
@@ -83,8 +91,7 @@ void report(const ImportArguments& o, const Imported& imported) {
 
 int run(const ImportArguments& o) {
   if (const Status other = check_output_is_no_input(o.out, {o.file}); !other) return fail(other.error());
-  const std::string ending = ending_of(o.file);
-  auto imported = ending == ".tm25ray" || ending == ".tm25" ? import_rays(o) : import_photometry(o);
+  auto imported = is_ray_file(o.file) ? import_rays(o) : import_photometry(o);
   if (!imported) return fail(imported.error());
   if (const Status written = write_luminaire(o.out, imported->lamp); !written) return fail(written.error());
   report(o, *imported);
@@ -99,8 +106,11 @@ Command add_luminaire_import(CLI::App& luminaire) {
   command->footer(
       "Example: lightwell luminaire import spot.ies --out spot.exr\n"
       "         lightwell luminaire import led.tm25ray --out led.exr\n"
-      "LM-63 (.ies) and EULUMDAT (.ldt) tell how a lamp shines far away, ray files of TM-25 near by too");
-  command->add_option("file", o->file, "FILE.ies, FILE.ldt or FILE.tm25ray")->required()->type_name("FILE");
+      "LM-63 (.ies) and EULUMDAT (.ldt) tell how a lamp shines far away, ray files near by too: of TM-25, or "
+      "text (.csv, .txt, .dat)");
+  command->add_option("file", o->file, "FILE.ies, FILE.ldt, FILE.tm25ray or FILE.csv")
+      ->required()
+      ->type_name("FILE");
   command->add_option("--positions", o->rays.positions, "Of a ray file: point sources a side")
       ->check(whole_numbers(2, 64))
       ->capture_default_str();

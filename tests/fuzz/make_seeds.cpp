@@ -114,6 +114,8 @@ void rays(const std::filesystem::path& folder) {
        {1.0F, 2.0F, 3.0F, 0.0F, 0.0F, 1.0F, 0.5F, 0.0F, 0.0F, 0.0F, 0.6F, 0.0F, 0.8F, 1.5F})
     put(item);
   write(folder / "lamp.tm25ray", text);
+  write(folder / "lamp.csv", "# lamp\nx,y,z,u,v,w,flux\n0.01,0,0,0,0,-1,0.5\n0,0.01,0,0.6,0,-0.8,1.5\n");
+  write(folder / "lamp.dat", "2 4\n1 2 3 0 0 1 0.5 0.55\n0 0 0 0.6 0 0.8 1.5 0.55\n");
 }
 
 void imports(const std::filesystem::path& folder) {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "interface/photometric_file.h"
 #include "tests/integration/commands/command_fixture.h"
 
 namespace lightwell::test {
@@ -52,6 +53,52 @@ TEST_F(LuminaireCommandTest, ALampIsImportedAndAsked) {
   EXPECT_NEAR(lux[0][0].get<double>(), 100, 1e-9);
   EXPECT_EQ(lux[1][0].get<double>(), 0) << "behind the lamp";
   EXPECT_NEAR(lux[2][0].get<double>(), 100 / 25.0 * 0.8, 1e-9);
+}
+
+TEST_F(LuminaireCommandTest, RaysAsTextAreALampAndItsFarFieldGoesOut) {
+  std::ofstream rays(path("rays.csv"));
+  rays << "x,y,z,u,v,w,flux\n";
+  for (int i = 0; i < 20000; ++i) {  // Lambertian, 100 lm, by a spiral
+    const double sine = std::sqrt((i + 0.5) / 20000), turn = 2.399963 * i;
+    rays << 0.01 * ((i % 7) - 3) << "," << 0.01 * ((i % 5) - 2) << ",0," << sine * std::cos(turn) << ","
+         << sine * std::sin(turn) << "," << -std::sqrt(1 - sine * sine) << ",0.005\n";
+  }
+  rays.close();
+  const auto imported = import("rays.csv");
+  ASSERT_EQ(imported.exit_code, 0) << imported.err;
+  EXPECT_EQ(nlohmann::json::parse(imported.out)["rays"], 20000);
+  EXPECT_NEAR(nlohmann::json::parse(imported.out)["flux_lm"].get<double>(), 100, 0.01);
+  const auto exported =
+      lightwell({"luminaire", "export", path("lamp.exr"), "--out", path("lamp.ies"), "--json"});
+  ASSERT_EQ(exported.exit_code, 0) << exported.err;
+  const auto report = nlohmann::json::parse(exported.out);
+  EXPECT_NEAR(report["flux_lm"].get<double>(), 100, 1);
+  const auto back = lightwell({"luminaire", "import", path("lamp.ies"), "--out", path("far.exr"), "--json"});
+  ASSERT_EQ(back.exit_code, 0) << back.err;
+  EXPECT_NEAR(nlohmann::json::parse(back.out)["flux_lm"].get<double>(), report["flux_lm"].get<double>(),
+              1e-5);
+}
+
+// What a file says comes out as it went in, to the nine digits that are written.
+TEST_F(LuminaireCommandTest, AMakersTableGoesOutAsItCameIn) {
+  std::ofstream(path("odd.ies")) << "IESNA:LM-63-2002\n[LUMINAIRE] Odd\nTILT=NONE\n1 -1 0.37 4 3 1 2 0 0 "
+                                    "0\n1 1 10\n0 13.5 45 90\n0 45 90\n"
+                                 << "101.3 88 41.7 0\n101.3 77.25 12.125 0.5\n101.3 66 3 0.001\n";
+  ASSERT_EQ(import("odd.ies").exit_code, 0);
+  const auto exported = lightwell({"luminaire", "export", path("lamp.exr"), "--out", path("out.ies")});
+  ASSERT_EQ(exported.exit_code, 0) << exported.err;
+  const auto before = read_ies(path("odd.ies")), after = read_ies(path("out.ies"));
+  ASSERT_TRUE(before && after);
+  EXPECT_EQ(after->name, "Odd");
+  EXPECT_EQ(after->lamp.vertical_deg, before->lamp.vertical_deg);
+  EXPECT_EQ(after->lamp.horizontal_deg, before->lamp.horizontal_deg);
+  ASSERT_EQ(after->lamp.candela.size(), before->lamp.candela.size());
+  for (std::size_t i = 0; i < before->lamp.candela.size(); ++i)
+    EXPECT_NEAR(after->lamp.candela[i], before->lamp.candela[i], 5e-9 * before->lamp.candela[i]);
+  EXPECT_NEAR(luminous_flux(after->lamp) / luminous_flux(before->lamp), 1, 1e-8);
+  const auto over = lightwell({"luminaire", "export", path("lamp.exr"), "--out", path("lamp.exr")});
+  EXPECT_EQ(over.exit_code, 2) << over.err;
+  expect_refused(lightwell({"luminaire", "export", path("odd.ies"), "--out", path("x.ies")}), 3, "is no EXR");
 }
 
 TEST_F(LuminaireCommandTest, BadInputIsOneLineAndLeavesNothing) {
