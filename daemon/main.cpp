@@ -5,6 +5,8 @@
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/signalfd.h>
 #include <systemd/sd-daemon.h>
 #include <unistd.h>
@@ -12,12 +14,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <thread>
 
 #include "daemon/clock.h"
@@ -106,6 +110,15 @@ void reload(Daemon& daemon, const Arguments& arguments) {
   sd_notify(0, "READY=1");
 }
 
+// A page that the disk has to bring back costs a frame. Only what is in use is held, so that threads' stacks stay small.
+// Under a limit of locked memory allocations would fail later on, which is worse.
+void stay_in_memory() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_MEMLOCK, &limit) != 0 || (limit.rlim_cur != RLIM_INFINITY && geteuid() != 0)) return;
+  if (mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0)
+    spdlog::debug("memory may be paged out: {}", std::generic_category().message(errno));
+}
+
 // The watchdog is fed only while the frame path's loop turns.
 void serve(Daemon& daemon, const Arguments& arguments, int signals) {
   std::uint64_t watchdog_us = 0;
@@ -162,6 +175,7 @@ int run(const Arguments& arguments) {
   const int signals = block_signals();
   auto daemon = Daemon::start(loaded->configuration);
   if (!daemon) return fail(daemon.error());
+  stay_in_memory();
   malloc_trim(0);  // calibration files are read as text, many times their tables
   spdlog::info("page: {}", (*daemon)->url());
   sd_notify(0, "READY=1");

@@ -5,9 +5,9 @@
 #include <dlfcn.h>
 
 #include <cstdlib>
-#include <filesystem>
 #include <string>
-#include <system_error>
+
+#include "interface/companion.h"
 
 namespace lightwell {
 namespace {
@@ -30,9 +30,7 @@ int launched_rank() {
 
 Result<std::unique_ptr<FieldRanks>> launched_ranks() {
   if (rank_variable() == nullptr) return std::make_unique<FieldRanks>();
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  const auto module = program.parent_path() / "lightwell-mpi.so";
+  const auto module = companion("lightwell-mpi.so");
   // Never closed: MPI has threads and handlers of its own. Global: its plugins look for its symbols.
   void* library = ::dlopen(module.c_str(), RTLD_NOW | RTLD_GLOBAL);
   const char* why = library == nullptr ? ::dlerror() : nullptr;

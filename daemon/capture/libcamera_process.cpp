@@ -12,8 +12,9 @@
 #include <unistd.h>
 
 #include <array>
-#include <filesystem>
 #include <utility>
+
+#include "interface/companion.h"
 
 extern char** environ;
 
@@ -33,9 +34,7 @@ bool ends_within(pid_t pid, std::chrono::milliseconds time) noexcept {
 }  // namespace
 
 std::string libcamera_program() {
-  std::error_code error;
-  return (std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "lightwell-libcamera")
-      .string();
+  return companion("lightwell-libcamera").string();
 }
 
 bool LibcameraProcess::start(const std::string& argument) {
