@@ -77,6 +77,8 @@ std::vector<Row> frame_suite(const Options& options);
 std::vector<Row> fit_suite(const Options& options);
 std::vector<Figure> fit_figures(const std::vector<Row>& rows);
 std::vector<Row> field_suite(const Options& options);
+std::vector<Row> luminaire_suite(const Options& options);
+std::vector<Figure> luminaire_figures(const std::vector<Row>& rows);
 std::vector<Row> lens_suite(const Options& options);
 std::vector<Row> response_suite(const Options& options);
 std::vector<Row> sync_suite(const Options& options);

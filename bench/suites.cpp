@@ -52,6 +52,7 @@ const std::vector<Suite>& suites() {
       {"lights", lights_rows, curve_figures},
       {"fit", fit_suite, fit_figures},
       {"field", field_suite, field_figures},
+      {"luminaire", luminaire_suite, luminaire_figures},
       {"lens", lens_suite},
       {"response", response_suite},
       {"sync", sync_suite},
