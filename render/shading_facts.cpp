@@ -41,11 +41,20 @@ std::string shadow_look_up(bool nothing_casts, const ShadowLookUp& options) {
   return fact("HAS_SHADOWS", true) + "#define CASTER_SLACK " +
          std::to_string(kCurvatureTexels + (options.simplified_casters ? kSimplifiedTexels : 0)) +
          "\n#define DEPTH_SLACK 0.00003\n#define LEAST_COSINE 0.05\n" +
-         fact("SOFT_EDGES", options.soft_edges) + std::string(shader_text("shadow.glsl"));
+         fact("SOFT_EDGES", options.soft_edges) + shadow_texel_code() +
+         std::string(shader_text("shadow.glsl"));
+}
+
+std::string shadow_texel_code() {
+  return std::string(shader_text("shadow_texels.glsl"));
 }
 
 std::string surface_code() {
   return std::string(shader_text("surface.glsl"));
+}
+
+std::string reflectance_code() {
+  return std::string(shader_text("reflectance.glsl"));
 }
 
 }  // namespace lightwell::render

@@ -30,5 +30,9 @@ std::string shadow_look_up(bool nothing_casts, const ShadowLookUp& options);
 
 // surface.glsl: what the G-buffer shows at a pixel.
 std::string surface_code();
+// After it, reflectance.glsl: what the surface returns of a light.
+std::string reflectance_code();
+// shadow_texels.glsl: look-ups in tiles of depths; part of shadow_look_up().
+std::string shadow_texel_code();
 
 }  // namespace lightwell::render

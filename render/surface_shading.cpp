@@ -39,7 +39,8 @@ Status add(gl::Program& made, const std::string& defines) {
 Result<SurfaceShading::Programs> SurfaceShading::make_programs(bool shadows, bool lists) const {
   Programs made;
   const std::string facts = kPasses + models_ + (shadows ? look_up_ : no_look_up_) + "#define LIGHT_LISTS " +
-                            (lists ? "1\n" + LightLists::facts() : "0\n") + surface_code();
+                            (lists ? "1\n" + LightLists::facts() : "0\n") + surface_code() +
+                            reflectance_code();
   if (Status s = add(made.whole, facts + "#define LIGHT_PASS WHOLE\n"); !s) return s.error();
   if (interleave_ == 1) return made;
   const std::string filter = filter_facts(interleave_) + std::string(shader_text("interleave.glsl"));
