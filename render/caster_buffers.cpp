@@ -9,7 +9,8 @@ namespace lightwell::render {
 CasterBuffers::CasterBuffers(const Casters& casters)
     : counts_{static_cast<GLsizei>(casters.closed_count), static_cast<GLsizei>(casters.open_count),
               static_cast<GLsizei>(casters.support_count)},
-      vertex_array_(gl::make_vertex_array()) {
+      vertex_array_(gl::make_vertex_array()),
+      alone_(gl::make_vertex_array()) {
   glBindVertexArray(vertex_array_.id());
   positions_ =
       gl::make_buffer(GL_ARRAY_BUFFER, casters.positions.data(), casters.positions.size() * sizeof(Vec3f));
@@ -21,6 +22,11 @@ CasterBuffers::CasterBuffers(const Casters& casters)
     glEnableVertexAttribArray(row);
     glVertexAttribDivisor(row, 1);
   }
+  glBindVertexArray(alone_.id());
+  glBindBuffer(GL_ARRAY_BUFFER, positions_.id());
+  glEnableVertexAttribArray(0);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vec3f), nullptr);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.id());
   glBindVertexArray(0);
 }
 
@@ -42,6 +48,10 @@ void CasterBuffers::bind(GLuint instances, std::size_t first) const {
                           reinterpret_cast<const void*>(first + row * kRow));
 }
 
+void CasterBuffers::bind_alone() const {
+  glBindVertexArray(alone_.id());
+}
+
 void CasterBuffers::run(int which, GLsizei instances) const {
   if (counts_[which] == 0 || instances == 0) return;
   std::uintptr_t first = 0;
@@ -50,9 +60,9 @@ void CasterBuffers::run(int which, GLsizei instances) const {
                           reinterpret_cast<const void*>(first * sizeof(std::uint32_t)), instances);
 }
 
-void CasterBuffers::draw_objects(GLsizei instances) const {
+void CasterBuffers::draw_objects(GLsizei instances, bool cull) const {
   // Of a closed mesh the side toward the light is the nearer one everywhere: the other half need not be drawn.
-  glEnable(GL_CULL_FACE);
+  if (cull) glEnable(GL_CULL_FACE);
   glCullFace(GL_BACK);
   run(0, instances);
   glDisable(GL_CULL_FACE);

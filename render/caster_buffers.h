@@ -19,7 +19,10 @@ class CasterBuffers {
   void move(const Casters& casters);
   // Instances read three vec4 (locations 1 to 3) from this buffer, from byte `first` on.
   void bind(GLuint instances, std::size_t first) const;
-  void draw_objects(GLsizei instances) const;
+  // For one instance that reads nothing.
+  void bind_alone() const;
+  // cull: of closed meshes only what faces the light, which is enough for lights outside of them
+  void draw_objects(GLsizei instances, bool cull = true) const;
   void draw_supports() const;  // one instance
 
  private:
@@ -27,6 +30,7 @@ class CasterBuffers {
 
   GLsizei counts_[3] = {0, 0, 0};  // indices: closed, open, supports
   gl::VertexArray vertex_array_;
+  gl::VertexArray alone_;
   gl::Buffer positions_;
   gl::Buffer indices_;
 };

@@ -19,6 +19,8 @@ class CutoutCasters {
   [[nodiscard]] bool empty() const { return draws_.empty(); }
   // Adds to the maps that the atlas has just drawn.
   void draw(const ShadowAtlas& atlas) const;
+  // Adds to the map that is the viewport.
+  void draw(const Mat4f& clip_from_world) const;
 
  private:
   struct Draw {
@@ -28,9 +30,10 @@ class CutoutCasters {
     float alpha = 1;
     float alpha_cutoff = 0;
   };
+  void draw_all(const gl::Program& program, GLsizei instances) const;
   std::vector<Draw> draws_;
-  gl::Program program_;
-  gl::VertexArray vertex_array_;
+  gl::Program program_, one_view_;
+  gl::VertexArray vertex_array_, alone_;
 };
 
 }  // namespace lightwell::render

@@ -53,6 +53,8 @@ Result<Renderer> Renderer::create(const Scene& scene, const RendererOptions& opt
   if (!surfaces) return surfaces.error();
   if (Status s = surfaces->use_light_lists(options.light_lists); !s) return s.error();
   r.kinds_ = material_kinds(scene);
+  r.lamps_ = LampShading::create(scene, r.nothing_casts_,
+                                 {options.shadow_size, options.simplify_casters, options.lamp_error});
   if (options.field_balls) {
     auto balls = FieldBalls::create(*options.field_balls, scene.materials.size() - 1, r.kinds_.emission);
     if (!balls) return balls.error();
@@ -99,6 +101,7 @@ void Renderer::move(const Scene& scene, std::span<const std::size_t> moved) {
   const float farthest = casters_.farthest_move(scene, moved);
   casters_.move(scene, moved);
   if (options_.texels_by_power) fine_casters_.move(scene, moved);
+  lamps_.follow(scene, farthest);
   if (holds(fitted_objects_, casters_.objects) && holds(fitted_scene_, casters_.scene)) {
     for (Casters* casters : {&casters_, &fine_casters_}) {
       casters->objects = fitted_objects_;
@@ -166,6 +169,10 @@ Status Renderer::set_field(const LightField& field, const MainLights& main_light
   return compositor_ || !shadows_ ? field_->make_unshadowed() : Status();
 }
 
+Status Renderer::set_lamps(std::span<const PlacedLamp> lamps) {
+  return lamps_.set(lamps, object_bounds());
+}
+
 Status Renderer::set_plate(const Plate& plate, float white) {
   if (!compositor_) {
     auto compositor = Compositor::create();
@@ -216,6 +223,7 @@ Status Renderer::render(const LightSet& given, const SceneCamera& camera, double
   std::vector<LightRow> rows = make_light_rows(lights.lights, casters_);
   shadow_maps_ = nothing_casts_ ? 0 : rows.size();
   shadow_maps_drawn_ = 0;
+  if (Status s = draw_lamp_maps(); !s) return s;
   const int samples = options_.samples;
   // A plate is seen through each sample, so that its sum over the lights must be known first.
   const int at_once = compositor_ ? 1 : samples;
@@ -260,8 +268,11 @@ Status Renderer::render_samples(std::span<LightRow> all, const LightSet& lights,
           if (field_balls() > 0) balls_->draw(view);
         }
         time = lap(time, times_.gbuffer_ms);
-        shade({view, lights.ambient, first_block, last_block, weight}, start_sum, environment_turn_rad);
+        const SurfaceShading::Sample of_view{view, lights.ambient, first_block, last_block, weight};
+        shade(of_view, start_sum, environment_turn_rad);
         start_sum = false;
+        if (first_block)
+          if (Status s = shade_lamps(of_view); !s) return s;
         time = lap(time, times_.shading_ms);
       }
     }
@@ -288,17 +299,49 @@ Result<std::vector<ShadowAtlas::Block>> Renderer::blocks_of(std::span<LightRow> 
   return blocks;
 }
 
+Status Renderer::draw_lamp_maps() {
+  if (!shadows_ || nothing_casts_) return {};
+  const double start = now_ms();
+  const bool has_fine = ShadowAtlas::has_large_maps({options_.shadow_size, options_.texels_by_power});
+  if (Status s = lamps_.draw_maps({casters_, has_fine ? fine_casters_ : casters_, atlas_, cutouts_}); !s)
+    return s;
+  const LampShading::Counts counts = lamps_.counts();
+  shadow_maps_ += counts.maps;
+  shadow_maps_drawn_ += counts.maps_drawn;
+  lap(start, times_.shadow_ms);
+  return {};
+}
+
 void Renderer::shade(const SurfaceShading::Sample& sample, bool start_sum, double environment_turn_rad) {
   const GLuint so_far = sums_.last().texture.id();
   if (compositor_) shade_surfaces(false, unshadowed_sums_, sample, start_sum);
   shade_surfaces(shadows_, sums_, sample, start_sum);
+  draw_background(so_far, sample, start_sum, show_environment_ && sample.first_block, environment_turn_rad);
+}
 
+Status Renderer::shade_lamps(const SurfaceShading::Sample& sample) {
+  for (std::size_t pass = 0; pass < lamps_.passes(); ++pass)
+    for (const bool unshadowed : {true, false}) {
+      if (unshadowed && !compositor_) continue;
+      Sums& sums = unshadowed ? unshadowed_sums_ : sums_;
+      const GLuint so_far = sums.last().texture.id();
+      sums.current = 1 - sums.current;
+      const SurfaceShading::Target target{sums.last().framebuffer.id(), so_far, false, width(), height()};
+      if (Status s = lamps_.shade(pass, shadows_ && !unshadowed, sample, target, gbuffer_); !s) return s;
+      if (!unshadowed) draw_background(so_far, sample, false, false, 0);
+    }
+  return {};
+}
+
+// To the framebuffer that the surfaces were drawn to.
+void Renderer::draw_background(GLuint so_far, const SurfaceShading::Sample& sample, bool start_sum,
+                               bool show_environment, double environment_turn_rad) const {
   const Uniforms background(background_);
   background.set_texture("so_far", 0, so_far);
   background.set_texture("environment", 1, environment_.id());
   background.set("weight", sample.weight);
   background.set("start_sum", start_sum ? 1 : 0);
-  background.set("show_environment", show_environment_ && sample.first_block ? 1 : 0);
+  background.set("show_environment", show_environment ? 1 : 0);
   background.set("environment_turns",
                  static_cast<float>(std::remainder(environment_turn_rad / (2 * kPi), 1.0)));
   background.set("view_forward", sample.view.forward.data());

@@ -17,6 +17,7 @@
 #include "render/field_shading.h"
 #include "render/gbuffer.h"
 #include "render/graphics_reset.h"
+#include "render/lamp_shading.h"
 #include "render/picture.h"
 #include "render/shadow_atlas.h"
 #include "render/surface_shading.h"
@@ -37,6 +38,8 @@ struct RendererOptions {
   int interleave = 2;
   bool light_lists = false;     // SurfaceShading::use_light_lists
   bool measure_passes = false;  // waits for each pass, to time it
+  // Of taking positions of a lamp together (LampDetail); 0: every one is drawn.
+  double lamp_error = 0.01;
   // Balls of a field that is set; the scene's last material is theirs (field_ball_material).
   std::optional<FieldBallsOptions> field_balls;
 };
@@ -71,6 +74,10 @@ class Renderer {
   [[nodiscard]] const FieldShading* field() const { return field_ ? &*field_ : nullptr; }
   // 0 before a field is set.
   [[nodiscard]] std::size_t field_balls() const { return field_ && balls_ ? balls_->count() : 0; }
+  // From now on these lamps shine beside the lights or the field; what did not change keeps its maps.
+  // bad_input, failed: LampShading::set
+  Status set_lamps(std::span<const PlacedLamp> lamps);
+  [[nodiscard]] const LampShading& lamps() const { return lamps_; }
   // environment_turn_rad turns the shown environment about +Y (a light at azimuth λ comes to λ + angle).
   Status render(const LightSet& lights, const SceneCamera& camera, double environment_turn_rad = 0);
   // Puts opaque pixels of a picture over the last one rendered. left, bottom: pixels from its lower left corner.
@@ -106,7 +113,7 @@ class Renderer {
   [[nodiscard]] Status check() const { return reset_.check(); }
   // Waits until everything is drawn.
   static void finish() { glFinish(); }
-  // Maps of the last frame: one a light that has power; 0 where nothing casts.
+  // Maps of the last frame: one a light that has power, and those of lamps; 0 where nothing casts.
   [[nodiscard]] std::size_t shadow_maps() const { return shadow_maps_; }
   // Of these, drawn for it: the others stood from frames before.
   [[nodiscard]] std::size_t shadow_maps_drawn() const { return shadow_maps_drawn_; }
@@ -141,6 +148,10 @@ class Renderer {
   // Adds the block of lights and, with the first of a sample, what does not depend on them.
   void shade(const SurfaceShading::Sample& sample, bool start_sum, double environment_turn_rad);
   void shade_surfaces(bool shadows, Sums& sums, const SurfaceShading::Sample& sample, bool start_sum) const;
+  Status draw_lamp_maps();
+  Status shade_lamps(const SurfaceShading::Sample& sample);
+  void draw_background(GLuint so_far, const SurfaceShading::Sample& sample, bool start_sum,
+                       bool show_environment, double environment_turn_rad) const;
   // Adds the time since start to a pass, where passes are measured.
   double lap(double start, double& pass) const;
 
@@ -156,6 +167,7 @@ class Renderer {
   MaterialKinds kinds_;
   std::optional<FieldShading> field_;
   std::optional<FieldBalls> balls_;
+  LampShading lamps_;
   gl::Program background_;
   gl::Program lay_over_;  // made when it is first needed
   gl::VertexArray no_vertices_;

@@ -37,6 +37,9 @@ class ShadowAtlas {
   }
   [[nodiscard]] int side() const { return tiles_.pages().side() * tiles_.unit(); }  // of every page, texels
   [[nodiscard]] bool empty() const { return coarse_.empty(); }
+  // The casters that it draws.
+  [[nodiscard]] const CasterBuffers& coarse() const { return coarse_; }
+  [[nodiscard]] const CasterBuffers& fine() const { return fine_; }
 
   // Follows casters that moved by so much at most. Infinity: all maps are drawn anew, as where the spheres that they fit
   // changed.

@@ -1,0 +1,260 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+// Pictures under lamps against brute force (tests/support/lamp_reference.h) and closed forms.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "tests/support/lamp_reference.h"
+#include "tests/unit/render/render_fixture.h"
+
+namespace lightwell {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+using render::PlacedLamp;
+
+constexpr int kWidth = 96, kHeight = 72;
+constexpr double kMostError =
+    0.03;  // relative RMSE that the renderer is to keep (docs/user-guide/rendering.md)
+
+class LampPictures : public Rendering {
+ protected:
+  static render::Renderer renderer_of(const Scene& scene, double lamp_error = 0, int shadow_size = 256) {
+    render::RendererOptions options;
+    options.width = kWidth;
+    options.height = kHeight;
+    options.shadow_size = shadow_size;
+    options.lamp_error = lamp_error;
+    auto renderer = render::Renderer::create(scene, options);
+    EXPECT_TRUE(renderer.ok()) << renderer.error().message;
+    return std::move(renderer).value();
+  }
+  static render::RadiancePicture picture_of(render::Renderer& renderer, const std::vector<PlacedLamp>& lamps,
+                                            const SceneCamera& camera, const LightSet& lights = {}) {
+    EXPECT_TRUE(renderer.set_lamps(lamps).ok());
+    const Status status = renderer.render(lights, camera);
+    EXPECT_TRUE(status.ok()) << status.error().message;
+    return renderer.radiance();
+  }
+};
+
+std::shared_ptr<const Luminaire> shared(Luminaire lamp) {
+  return std::make_shared<const Luminaire>(std::move(lamp));
+}
+
+// A ball and a box on a floor that casts too: it supports the scene.
+Scene stage() {
+  Scene scene;
+  add_ground(scene, lambertian(Rgb::Constant(0.6f)), true, 1.5f);
+  add_box(scene, {-0.5f, 0, -0.3f}, {-0.2f, 0.3f, 0.1f}, lambertian({0.7f, 0.3f, 0.2f}));
+  add_sphere(scene, {0.2f, 0.25f, 0.1f}, 0.18f, lambertian({0.2f, 0.5f, 0.7f}), true, 10);
+  return scene;
+}
+SceneCamera stage_camera() {
+  return camera_at({0.3f, 1.3f, 1.9f}, {0, 0.1f, 0}, 0.6f);
+}
+
+TEST_F(LampPictures, LampCloseToAnObjectHasItsNearFieldAndItsSoftShadow) {
+  const Scene scene = stage();
+  const std::vector<PlacedLamp> lamps = {
+      {shared({"", patterned_lamp(5, 4, 0.04, 48), {}}), aimed_down({0, 1, 0}, 0.15), 1}};
+  const auto reference = lamp_picture_by_force(scene, lamps, stage_camera(), kWidth, kHeight);
+  auto renderer = renderer_of(scene);
+  const auto picture = picture_of(renderer, lamps, stage_camera());
+  const PictureDifference off = difference(picture, reference);
+  EXPECT_LE(off.relative_rmse, kMostError);
+  EXPECT_NEAR(off.light, 1, 0.005);
+  EXPECT_GT(off.lit, 2000u);
+  EXPECT_EQ(renderer.lamps().counts().sources, 20u);
+  EXPECT_EQ(renderer.lamps().counts().maps, 20u);
+}
+
+// Intensity that differs over the whole sphere, in even steps of 5° and 10°.
+FarField uneven_far_field() {
+  FarField far;
+  far.horizontal_deg.clear();
+  for (int c = 0; c < 360; c += 10) far.horizontal_deg.push_back(c);
+  for (int g = 0; g <= 180; g += 5) far.vertical_deg.push_back(g);
+  for (const double c : far.horizontal_deg)
+    for (const double g : far.vertical_deg)
+      far.candela.push_back(30 + 20 * std::cos(g * kPi / 60) +
+                            10 * std::sin(c * kPi / 90) * std::sin(g * kPi / 180));
+  return far;
+}
+
+TEST_F(LampPictures, FarFieldAmidTheObjectsLightsAllAroundIt) {
+  Scene scene = stage();
+  add_box(scene, {-1.5f, 0, -1.5f}, {1.5f, 1.2f, -1.4f}, lambertian(Rgb::Constant(0.5f)));
+  const std::vector<PlacedLamp> lamps = {
+      {shared({"", {}, uneven_far_field()}), aimed_down({-0.05, 0.35, 0.35}, 0.4), 2}};
+  const auto reference = lamp_picture_by_force(scene, lamps, stage_camera(), kWidth, kHeight);
+  auto renderer = renderer_of(scene);
+  const auto picture = picture_of(renderer, lamps, stage_camera());
+  const PictureDifference off = difference(picture, reference);
+  EXPECT_LE(off.relative_rmse, kMostError);
+  EXPECT_NEAR(off.light, 1, 0.005);
+  EXPECT_GT(off.lit, 2000u);
+  EXPECT_LT(off.lit_share, 0.97);  // there are shadows
+  EXPECT_GT(renderer.lamps().counts().maps, 1u);
+}
+
+TEST_F(LampPictures, FarFieldFarAwayHasOneMap) {
+  const Scene scene = stage();
+  const std::vector<PlacedLamp> lamps = {{shared({"", {}, uneven_far_field()}), aimed_down({1.5, 3, 1}), 10}};
+  const auto reference = lamp_picture_by_force(scene, lamps, stage_camera(), kWidth, kHeight);
+  auto renderer = renderer_of(scene);
+  const PictureDifference off = difference(picture_of(renderer, lamps, stage_camera()), reference);
+  EXPECT_LE(off.relative_rmse, kMostError);
+  EXPECT_NEAR(off.light, 1, 0.005);
+  EXPECT_EQ(renderer.lamps().counts().maps, 1u);
+}
+
+// What a ray file becomes: images over the hemisphere, and a rest that shines beside and behind.
+Luminaire lamp_of_rays() {
+  Luminaire lamp;
+  LampPlanes& planes = lamp.near.emplace().intensity.planes;
+  planes.map = LampMap::hemisphere;
+  planes.positions = {3, 2};
+  planes.spacing_m = 0.05;
+  planes.first_m = {-0.05, -0.025};
+  planes.pixels = {64, 64};
+  planes.low_m = Vec2d::Constant(-1);
+  planes.high_m = Vec2d::Constant(1);
+  lamp.near->intensity.values.resize(planes.images() * planes.image_size());
+  for (int v = 0; v < 2; ++v)
+    for (int u = 0; u < 3; ++u) {
+      Rgb* pixel = lamp.near->intensity.image(u, v);
+      for (int t = 0; t < 64; ++t)
+        for (int s = 0; s < 64; ++s) {
+          const Vec3d d = direction_from_square(planes.pixel_centre(s, t));
+          *pixel++ = Rgb::Constant(
+              static_cast<float>(-d.z() * (20 + 10 * std::sin(4 * d.x() + u) * std::cos(3 * d.y() + v))));
+        }
+    }
+  lamp.far = uneven_far_field();
+  for (double& candela : lamp.far->candela) candela /= 4;
+  return lamp;
+}
+
+TEST_F(LampPictures, LampOfRaysShinesOverItsWholeHemisphereAndBeyond) {
+  const Scene scene = stage();
+  for (const Vec3d& place : {Vec3d(0, 1.4, 0), Vec3d(-0.1, 0.5, 0.1)}) {  // above the objects, and among them
+    const std::vector<PlacedLamp> lamps = {{shared(lamp_of_rays()), aimed_down(place, 0.3), 1}};
+    const auto reference = lamp_picture_by_force(scene, lamps, stage_camera(), kWidth, kHeight);
+    auto renderer = renderer_of(scene);
+    const PictureDifference off = difference(picture_of(renderer, lamps, stage_camera()), reference);
+    EXPECT_LE(off.relative_rmse, kMostError) << place.transpose();
+    EXPECT_NEAR(off.light, 1, 0.005) << place.transpose();
+  }
+}
+
+TEST_F(LampPictures, SeveralLampsAndTheLightsOfAProbeAddUp) {
+  const Scene scene = stage();
+  const auto near = shared({"", patterned_lamp(3, 3, 0.05, 32), {}});
+  const auto far = shared({"", {}, uneven_far_field()});
+  const std::vector<PlacedLamp> both = {{near, aimed_down({0, 1, 0}), 1}, {far, aimed_down({1, 2, 1}), 5}};
+  const LightSet lights = light_set({{{1, 2, 1}, Rgb(10, 20, 30)}, {{-1, 2, 0}, Rgb::Constant(15)}});
+  auto renderer = renderer_of(scene);
+  const auto together = picture_of(renderer, both, stage_camera(), lights);
+  std::vector<float> sum(together.rgba.size(), 0.0f);
+  const auto add = [&](const render::RadiancePicture& p) {
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += p.rgba[i];
+  };
+  add(picture_of(renderer, {both[0]}, stage_camera()));
+  add(picture_of(renderer, {both[1]}, stage_camera()));
+  add(picture_of(renderer, {}, stage_camera(), lights));
+  float brightest = 0;
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    if (i % 4 == 3) continue;
+    brightest = std::max(brightest, together.rgba[i]);
+    EXPECT_NEAR(together.rgba[i], sum[i], 1e-4f + 1e-4f * sum[i]) << i;
+  }
+  EXPECT_GT(brightest, 1);
+}
+
+TEST_F(LampPictures, LampWhoseBackIsTurnedOrThatIsOffLightsNothing) {
+  const Scene scene = stage();
+  const auto lamp = shared({"", patterned_lamp(3, 3, 0.05, 32), {}});
+  Luminaire dark{"", patterned_lamp(2, 2, 0.05, 8), {}};
+  for (Rgb& value : dark.near->intensity.values) value.setZero();
+  Eigen::Isometry3d upward = aimed_down({0, 1, 0});
+  upward.linear() = Eigen::AngleAxisd(kPi / 2, Vec3d::UnitX()).toRotationMatrix();
+  auto renderer = renderer_of(scene);
+  for (const std::vector<PlacedLamp>& lamps :
+       {std::vector<PlacedLamp>{{lamp, upward, 1}}, std::vector<PlacedLamp>{{lamp, aimed_down({0, 1, 0}), 0}},
+        std::vector<PlacedLamp>{{shared(dark), aimed_down({0, 1, 0}), 1}},
+        std::vector<PlacedLamp>{{lamp, aimed_down({0, -1, 0}), 1}}}) {
+    const auto picture = picture_of(renderer, lamps, stage_camera());
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i)
+      if (i % 4 != 3) {
+        ASSERT_EQ(picture.rgba[i], 0) << i;
+      }
+  }
+}
+
+TEST_F(LampPictures, FloorHidesALampBelowIt) {
+  // Aimed up through the floor, which casts: nothing above it is lit.
+  const Scene scene = stage();
+  Eigen::Isometry3d upward = Eigen::Isometry3d::Identity();
+  upward.translation() = Vec3d(0, -0.5, 0);
+  upward.linear() = Eigen::AngleAxisd(kPi / 2, Vec3d::UnitX()).toRotationMatrix();
+  for (const Luminaire& lamp :
+       {Luminaire{"", patterned_lamp(3, 3, 0.05, 32), {}}, Luminaire{"", {}, uneven_far_field()}}) {
+    auto renderer = renderer_of(scene);
+    const auto picture = picture_of(renderer, {{shared(lamp), upward, 1}}, stage_camera());
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i)
+      if (i % 4 != 3) {
+        ASSERT_EQ(picture.rgba[i], 0) << i;
+      }
+  }
+}
+
+TEST_F(LampPictures, LampInsideAClosedObjectStaysThere) {
+  Scene scene;
+  add_ground(scene, lambertian(Rgb::Constant(0.6f)), false, 1.5f);
+  add_box(scene, {-0.2f, 0.2f, -0.2f}, {0.2f, 0.6f, 0.2f}, lambertian(Rgb::Constant(0.5f)));
+  add_box(scene, {0.6f, 0, 0.6f}, {0.8f, 0.2f, 0.8f}, lambertian(Rgb::Constant(0.5f)));
+  for (const Luminaire& lamp :
+       {Luminaire{"", patterned_lamp(3, 3, 0.05, 32), {}}, Luminaire{"", {}, uneven_far_field()}}) {
+    auto renderer = renderer_of(scene);
+    const auto picture = picture_of(renderer, {{shared(lamp), aimed_down({0, 0.45, 0}), 1}}, stage_camera());
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i)
+      if (i % 4 != 3) {
+        ASSERT_EQ(picture.rgba[i], 0) << i;
+      }
+  }
+}
+
+TEST_F(LampPictures, ReceiverInTheSamplingPlaneAndAtASourceStaysFinite) {
+  // The floor goes through the sources: half of it lies in their plane, which gets nothing.
+  Scene scene;
+  add_ground(scene, lambertian(Rgb::Constant(0.6f)), false, 1.5f);
+  add_box(scene, {-0.05f, -0.3f, -0.05f}, {0.05f, 0.3f, 0.05f}, lambertian(Rgb::Constant(0.5f)));
+  auto renderer = renderer_of(scene);
+  for (const Luminaire& lamp : {Luminaire{"", patterned_lamp(3, 3, 0.05, 32), {}}, lamp_of_rays()}) {
+    const auto picture = picture_of(renderer, {{shared(lamp), aimed_down({0, 0, 0}), 1}}, stage_camera());
+    for (const float value : picture.rgba) ASSERT_TRUE(std::isfinite(value));
+  }
+}
+
+TEST_F(LampPictures, OnlyALampThatMovedHasItsMapsDrawnAgain) {
+  const Scene scene = stage();
+  const auto lamp = shared({"", patterned_lamp(3, 2, 0.05, 16), {}});
+  std::vector<PlacedLamp> lamps = {{lamp, aimed_down({0, 1, 0}), 1}, {lamp, aimed_down({0.3, 1, 0}), 1}};
+  auto renderer = renderer_of(scene);
+  (void)picture_of(renderer, lamps, stage_camera());
+  EXPECT_EQ(renderer.shadow_maps_drawn(), 12u);
+  lamps[0].dimming = 0.5;
+  (void)picture_of(renderer, lamps, stage_camera());
+  EXPECT_EQ(renderer.shadow_maps_drawn(), 0u);
+  lamps[1].world_from_lamp = aimed_down({0.31, 1, 0});
+  const auto moved = picture_of(renderer, lamps, stage_camera());
+  EXPECT_EQ(renderer.shadow_maps_drawn(), 6u);
+  // As if it had always stood there.
+  auto another = renderer_of(scene);
+  EXPECT_EQ(moved.rgba, picture_of(another, lamps, stage_camera()).rgba);
+}
+
+}  // namespace
+}  // namespace lightwell

@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 The Lightwell Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "render/lamp_sources.h"
+
+#include <gtest/gtest.h>
+
+#include "render/lamp_detail.h"
+#include "tests/support/lamp_reference.h"
+
+namespace lightwell::render {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+
+// Light of a plane's pixels, weighted alike: tangents are evenly spaced in all images.
+Rgbd sum_of(const std::vector<Rgb>& pixels) {
+  Rgbd sum = Rgbd::Zero();
+  for (const Rgb& p : pixels) sum += p.cast<double>();
+  return sum;
+}
+
+TEST(LampSources, PositionAloneKeepsItsPixels) {
+  const NearField lamp = patterned_lamp(3, 2, 0.02, 16);
+  const LampSources sources = sources_of(lamp, 1);
+  ASSERT_EQ(sources.sources.size(), 6u);
+  EXPECT_EQ(sources.pixels.size(), lamp.intensity.values.size());
+  for (std::size_t i = 0; i < sources.pixels.size(); ++i)
+    ASSERT_TRUE((sources.pixels[i] == lamp.intensity.values[i]).all());
+  // From the first position the image begins at this tangent.
+  const LampPlanes& planes = lamp.intensity.planes;
+  EXPECT_TRUE(sources.sources[0].low.isApprox((planes.low_m - planes.position(0, 0)) / planes.distance_m));
+}
+
+TEST(LampSources, PositionsTakenTogetherLoseNoLight) {
+  const NearField lamp = patterned_lamp(9, 7, 0.017, 24);  // a spacing is no whole number of pixels
+  const Rgbd all = sum_of(lamp.intensity.values);
+  for (const int group : {2, 3, 5, 9}) {
+    const LampSources sources = sources_of(lamp, group);
+    EXPECT_EQ(sources.sources.size(), source_count(lamp, group));
+    EXPECT_LE((sum_of(sources.pixels) - all).abs().maxCoeff(), 1e-5 * all.maxCoeff()) << group;
+  }
+  EXPECT_EQ(sources_of(lamp, largest_group(lamp)).sources.size(), 1u);
+}
+
+TEST(LampSources, PositionsWithoutLightAreLeftOut) {
+  NearField lamp = patterned_lamp(3, 3, 0.02, 8);
+  std::fill_n(lamp.intensity.image(1, 1), lamp.intensity.planes.image_size(), Rgb::Zero());
+  EXPECT_EQ(sources_of(lamp, 1).sources.size(), 8u);
+  EXPECT_EQ(sources_of(lamp, 3).sources.size(), 1u);
+}
+
+TEST(LampSources, FarFieldHasTheTablesNodes) {
+  FarField far;
+  far.horizontal_deg = {0, 90, 180, 270};
+  far.vertical_deg = {0, 45, 90, 135, 180};
+  for (int i = 0; i < 20; ++i) far.candela.push_back(i);
+  const LampSources sources = sources_of(far, Vec3d::Zero());
+  ASSERT_EQ(sources.width, 4);
+  ASSERT_EQ(sources.height, 5);
+  for (int v = 0; v < 5; ++v)
+    for (int h = 0; h < 4; ++h)
+      EXPECT_EQ(sources.pixels[static_cast<std::size_t>(v * 4 + h)][0],
+                static_cast<float>(far.at(static_cast<std::size_t>(h), static_cast<std::size_t>(v))));
+}
+
+TEST(LampSources, FarFieldThatEndsBrightEndsSharply) {
+  FarField half;  // nothing above the horizon
+  half.vertical_deg = {0, 45, 90};
+  half.candela = {10, 10, 10};
+  const LampSources sources = sources_of(half, Vec3d::Zero());
+  const double step = 180.0 / (sources.height - 1);
+  EXPECT_LE(step, 0.5);
+  EXPECT_EQ(sources.pixels[static_cast<std::size_t>(std::lround(90 / step) * sources.width)][0], 10);
+  EXPECT_EQ(sources.pixels[static_cast<std::size_t>((std::lround(90 / step) + 1) * sources.width)][0], 0);
+}
+
+class Detail : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    add_ground(scene_, lambertian(Rgb::Constant(0.5f)), false, 1);
+    add_box(scene_, {-0.1f, 0, -0.1f}, {0.1f, 0.2f, 0.1f}, lambertian(Rgb::Constant(0.5f)));
+    receivers_ = Receivers(scene_);
+  }
+  [[nodiscard]] int group_at(double height_m, double bound, int now = 0) const {
+    return detail_.choose(lamp_, bound, receivers_.places(), objects_, aimed_down({0, height_m, 0}), 1, now);
+  }
+  Scene scene_;
+  Receivers receivers_;
+  NearField lamp_ = patterned_lamp(9, 7, 0.005, 24, 0.1, 0.1);
+  LampDetail detail_{lamp_};
+  Sphere objects_{{0, 0.1f, 0}, 0.2f};
+};
+
+TEST_F(Detail, FewerPointsServeFartherAwayDownToOne) {
+  int last = 1;
+  for (const double height : {0.4, 1.0, 3.0, 10.0, 100.0}) {
+    const int group = group_at(height, 0.02);
+    EXPECT_GE(group, last) << height;
+    last = group;
+  }
+  EXPECT_EQ(last, largest_group(lamp_));
+  EXPECT_EQ(group_at(0.4, 0), 1);
+}
+
+TEST_F(Detail, WhatIsChosenErrsByNoMoreThanIsAllowed) {
+  for (const double height : {0.5, 2.0, 8.0}) {
+    const int group = group_at(height, 0.02);
+    const auto error = detail_.error(lamp_, group, receivers_.places(), objects_, aimed_down({0, height, 0}));
+    EXPECT_LE(error.total(), 0.02) << height;
+  }
+  const auto none = detail_.error(lamp_, 1, receivers_.places(), objects_, aimed_down({0, 0.5, 0}));
+  EXPECT_LT(none.total(), 1e-12);  // the rounding of the middles
+}
+
+TEST_F(Detail, GroupThatIsDrawnStaysWhileItServes) {
+  // Just within the bound from one side: from the other it waits for half of it.
+  const auto error_at = [&](double height) {
+    return detail_.error(lamp_, 9, receivers_.places(), objects_, aimed_down({0, height, 0})).total();
+  };
+  const double bound = 1.2 * error_at(20);
+  EXPECT_EQ(group_at(20, bound, 0), 9);
+  EXPECT_EQ(group_at(20, bound, 9), 9);
+  EXPECT_LT(group_at(20, bound, 3), 9);
+}
+
+}  // namespace
+}  // namespace lightwell::render
