@@ -67,6 +67,7 @@ RigNode read_node(const tinygltf::Node& node, const std::string& what) {
   check(node.rotation, 4, "rotation");
   check(node.scale, 3, "scale");
   RigNode result;
+  result.name = node.name;
   if (!node.matrix.empty()) {
     result.matrix = Eigen::Map<const Eigen::Matrix4d>(node.matrix.data()).cast<float>();
   } else {

@@ -52,7 +52,7 @@ class Reader {
       if (node.mesh >= 0) add_mesh(node, use, what);
     }
     if (scene_.indices.empty()) throw BadScene{"has no triangles with an area"};
-    if (!scene_.rig.moves()) scene_.rig = {};
+    if (!scene_.rig.moves()) scene_.rig.skins = {};  // nodes and tracks stay: lamps may hang on them
     return std::move(scene_);
   }
 

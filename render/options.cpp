@@ -97,6 +97,8 @@ Parsed parse_options(int argc, const char* const* argv) {
       ->check(CLI::IsMember({"matt", "mirror"}))
       ->capture_default_str()
       ->needs(balls);
+  LuminaireArguments luminaires;
+  luminaires.add_to(app);
   app.add_option("--lights", options.lights, "lights to make of the environment")
       ->check(whole_numbers(1, kMostLights))
       ->capture_default_str()
@@ -227,9 +229,14 @@ Parsed parse_options(int argc, const char* const* argv) {
     if (error.get_exit_code() == 0) return {std::nullopt, app.exit(error)};
     return {std::nullopt, complain(error.what())};
   }
-  if (!options.live && options.light_set.empty() && options.environment.empty() && options.field.empty())
-    return {std::nullopt, complain("one of --live, --environment, --light-set and --field must say where the "
-                                   "light comes from")};
+  const auto lamps = luminaires.lamps();
+  if (!lamps) return {std::nullopt, complain(lamps.error().message)};
+  options.luminaires = *lamps;
+  options.luminaire_error = luminaires.max_error();
+  if (!options.live && options.light_set.empty() && options.environment.empty() && options.field.empty() &&
+      options.luminaires.empty())
+    return {std::nullopt, complain("one of --live, --environment, --light-set, --field and --luminaire must "
+                                   "say where the light comes from")};
   options.live_field = options.field == "live";
   for (const auto* option : {domain, interface})
     if (!option->empty() && !options.light_is_live())
@@ -259,15 +266,21 @@ Parsed parse_options(int argc, const char* const* argv) {
     options.outputs.push_back(*name);
   }
   outputs.push_back(options.stats.string());
-  for (const std::string& output : outputs)
+  for (const std::string& output : outputs) {
     if (const Status other = check_output_is_no_input(
             output, {options.scene, options.environment, options.light_set,
                      options.live_field ? std::filesystem::path() : options.field, options.plate});
         !other)
       return {std::nullopt, complain(other.error().message)};
+    for (const LuminaireOptions& lamp : options.luminaires)
+      if (const Status other = check_output_is_no_input(output, {lamp.file}); !other)
+        return {std::nullopt, complain(other.error().message)};
+  }
   if (options.background_environment && !options.light_set.empty())
     return {std::nullopt,
             complain("--background environment: a light set has no picture of its environment")};
+  if (options.background_environment && !options.has_lights())
+    return {std::nullopt, complain("--background environment: a lamp has no picture of its environment")};
   if (options.background_environment && !options.field.empty())
     return {std::nullopt, complain("--background environment: a field has no picture of its environment")};
   if (options.field_balls) options.field_balls->mirror = ball_look == "mirror";

@@ -12,6 +12,7 @@
 #include "lighting/light_set.h"
 #include "render/field_balls.h"
 #include "render/look.h"
+#include "render/luminaire_options.h"
 #include "render/tracking_stream.h"
 
 namespace lightwell::render {
@@ -28,6 +29,8 @@ struct Options {
   bool live_field = false;  // the field comes over DDS
   int field_shadows = 4;    // main lights of a field that cast shadows
   std::optional<FieldBallsOptions> field_balls;
+  std::vector<LuminaireOptions> luminaires;
+  double luminaire_error = 0.01;  // of taking positions together
   int lights = 72;
   Method method = Method::best;
   Coverage coverage = Coverage::hemisphere;
@@ -60,6 +63,10 @@ struct Options {
   std::vector<FrameName> outputs;
   std::filesystem::path stats;
 
+  // Light other than that of lamps.
+  [[nodiscard]] bool has_lights() const {
+    return live || !environment.empty() || !light_set.empty() || !field.empty();
+  }
   // Light that comes when it comes: frames follow the clock.
   [[nodiscard]] bool light_is_live() const { return live || live_field; }
 };

@@ -18,6 +18,7 @@ using Mat4f = Eigen::Matrix4f;
 
 // Transform of a node from its parent's space: a matrix, or scale, then rotation, then translation.
 struct RigNode {
+  std::string name;
   int parent = -1;  // stands earlier in the list
   Vec3d translation = Vec3d::Zero();
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();

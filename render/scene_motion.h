@@ -19,6 +19,8 @@ class SceneMotion {
   Status move_to(double time_s);
   // Primitives whose vertices the last move changed, rising. What stands still for a while is not among them.
   [[nodiscard]] std::span<const std::size_t> moved() const { return moved_; }
+  // The nodes as they stand.
+  [[nodiscard]] const Pose& pose() const { return pose_; }
   // True where the last move changed a camera.
   [[nodiscard]] bool camera_moved() const { return camera_moved_; }
 

@@ -26,6 +26,7 @@
 #include "render/session_inputs.h"
 #include "render/session_text.h"
 #include "render/shown_field.h"
+#include "render/shown_lamps.h"
 #include "render/statistics.h"
 #include "render/tracked_camera.h"
 #include "render/window.h"
@@ -53,13 +54,14 @@ bool has_display() {
 class Session {
  public:
   Session(const Options& options, const std::atomic<bool>& stop, Scene& scene, ChosenCamera camera,
-          LightSource& source, PlateSource* plates, TrackingStream* tracking)
+          LightSource& source, ShownLamps& lamps, PlateSource* plates, TrackingStream* tracking)
       : options_(options),
         stop_(stop),
         scene_(scene),
         motion_(scene),
         camera_(std::move(camera)),
         source_(source),
+        lamps_(lamps),
         plates_(plates),
         tracking_(tracking),
         shown_field_(options),
@@ -79,12 +81,14 @@ class Session {
     renderer_options.interleave = options_.interleave;
     renderer_options.light_lists = options_.light_lists;
     renderer_options.measure_passes = !options_.stats.empty();
+    renderer_options.lamp_error = options_.luminaire_error;
     renderer_options.field_balls = options_.field_balls;
     if (options_.field_balls) scene_.materials.push_back(field_ball_material(*options_.field_balls));
     auto renderer = Renderer::create(scene_, renderer_options);
     if (!renderer) return renderer.error();
     renderer_.emplace(std::move(renderer).value());
     renderer_->set_look(look_);
+    if (Status s = place_lamps(); !s) return s;
     if (plates_ != nullptr)
       if (Status s = show_plate(); !s) return s;
     statistics_.shadow_size = options_.shadow_size;
@@ -95,6 +99,8 @@ class Session {
 
   // What a user should know of the picture that comes.
   void say_remarks() const {
+    for (const std::string& remark : remarks_on_lamps(options_.luminaires, lamps_.lamps(), scene_))
+      say(remark);
     const Renderer::LostShadows lost = renderer_->lost_shadows();
     if (2 * lost.objects > lost.of)
       say(lost_shadows_text(options_.scene.string(), lost.objects, lost.of, lost.texel_m,
@@ -149,7 +155,7 @@ class Session {
       const bool tracked = follow_tracking();
       const bool changed = window.take_changed() || tracked;
       const auto [width, height] = window.size();
-      const bool moves = scene_.rig.moves();
+      const bool moves = scene_.rig.moves() || lamps_.move();
       const bool draw =
           width > 0 && height > 0 && (*fresh || changed || moves || options_.frames.has_value());
       if (draw) {
@@ -182,13 +188,18 @@ class Session {
  private:
   // Brings what is animated to the time of the frame that comes: its number's, or the clock's.
   Status move_scene(bool by_clock) {
-    if (!scene_.rig.moves()) return {};
+    if (!scene_.rig.moves() && !lamps_.move()) return {};
     const double time_s = by_clock ? seconds_since(start_) : frame_ / options_.scene_rate_hz;
     if (Status s = motion_.move_to(time_s); !s)
       return Error{s.error().kind, options_.scene.string() + ": " + s.error().message};
     renderer_->move(scene_, motion_.moved());
     if (camera_.of_scene) camera_.camera = scene_.cameras[*camera_.of_scene];
-    return {};
+    return lamps_.move() ? place_lamps() : Status();
+  }
+
+  Status place_lamps() {
+    if (lamps_.empty()) return {};
+    return renderer_->set_lamps(lamps_.place(motion_.pose()));
   }
 
   Status check_driver() const {
@@ -245,10 +256,10 @@ class Session {
   // A graded plate tells no radiance: unless told, it counts as exposed for the first light that has power.
   bool meter_plate() {
     if (plate_white_cd_m2_ || !plates_->plate().display_referred) return false;
-    const float white =
-        source_.field() != nullptr
-            ? white_floor_cd_m2(*source_.field(), renderer_->object_bounds().centre.cast<double>())
-            : white_floor_cd_m2(source_.lights());
+    const Vec3d place = renderer_->object_bounds().centre.cast<double>();
+    const float white = (source_.field() != nullptr ? white_floor_cd_m2(*source_.field(), place)
+                                                    : white_floor_cd_m2(source_.lights())) +
+                        white_floor_cd_m2(lamps_.lamps(), place);
     if (!(white > 0)) return false;
     plate_white_cd_m2_ = white;
     say(plate_white_text(options_.plate, white));
@@ -295,6 +306,7 @@ class Session {
         renderer_->field() != nullptr ? renderer_->field()->lights_with_power() : lights.lights.size();
     statistics_.predicted_error = lights.lights.empty() ? 0 : lights.lights.back().predicted_error;
     statistics_.shadow_maps = renderer_->shadow_maps();
+    if (!lamps_.empty()) statistics_.lamps = renderer_->lamps().counts();
     if (options_.target_fps) statistics_.chosen = {budget_.texels(), budget_.expected_error()};
     const int number = frame_++;
     return write(number, true);
@@ -386,6 +398,7 @@ class Session {
   SceneMotion motion_;
   ChosenCamera camera_;
   LightSource& source_;
+  ShownLamps& lamps_;
   PlateSource* plates_;
   TrackingStream* tracking_;
   std::optional<Renderer> renderer_;
@@ -418,6 +431,8 @@ Status run_session(const Options& chosen, const std::atomic<bool>& stop) {
   if (!camera) return camera.error();
   auto source = open_lights(options);
   if (!source) return source.error();
+  auto lamps = ShownLamps::open(options.luminaires, *scene);
+  if (!lamps) return lamps.error();
 
   std::optional<PlateSource> plates;
   if (!options.plate.empty()) {
@@ -439,7 +454,7 @@ Status run_session(const Options& chosen, const std::atomic<bool>& stop) {
 
   // Made after the context and gone before it.
   const auto run = [&](Window* window, KmsScreen* screen) -> Status {
-    Session session(options, stop, *scene, *camera, **source, plates ? &*plates : nullptr,
+    Session session(options, stop, *scene, *camera, **source, *lamps, plates ? &*plates : nullptr,
                     tracking ? &*tracking : nullptr);
     if (Status s = session.prepare(); !s) return s;
     // Once all of it is known to work: a refusal is one line.

@@ -103,6 +103,8 @@ std::vector<std::string> remarks_on(const Scene& scene, const ChosenCamera& came
     remarks.push_back(
         options.light_set.string() + ": no light has power" +
         (set.ambient.maxCoeff() > 0 ? ", only its ambient light is seen" : "; the picture is black"));
+  if (options.probe && !options.luminaires.empty())
+    remarks.push_back("--probe: the balls show the light from far away, without the lamps");
   if (options.probe && !options.light_set.empty())
     remarks.push_back("--probe: a light set has no picture of its environment; without the mirror ball");
   return remarks;
@@ -121,6 +123,7 @@ Result<std::unique_ptr<LightSource>> open_lights(const Options& options) {
   if (!options.environment.empty())
     return environment_lights({options.environment, options.lights, options.method, options.coverage,
                                options.spin_deg, options.shadow_maps});
+  if (!options.has_lights()) return fixed_lights({}, 0);  // lamps alone
   auto set = read_light_set(options.light_set);
   if (!set) return set.error();
   return fixed_lights(*set, options.shadow_maps);

@@ -53,6 +53,10 @@ std::string Statistics::json() const {
     report["chosen"] = {{"lights", lights},
                         {"shadow_texels", chosen->shadow_texels},
                         {"expected_error", chosen->expected_error}};
+  if (lamps)
+    report["luminaires"] = {{"count", lamps->lamps},          {"positions", lamps->positions},
+                            {"sources", lamps->sources},      {"shadow_maps", lamps->maps},
+                            {"shadow_size", lamps->map_side}, {"bytes", lamps->bytes}};
   if (field)
     report["field"] = {
         {"size", field->size},

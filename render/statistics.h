@@ -44,6 +44,7 @@ struct Statistics {
     std::vector<double> update_ms;
   };
   std::optional<Field> field;
+  std::optional<LampShading::Counts> lamps;  // of the last frame
   std::string gl_renderer;
 
   // Passes are medians. A run without frames reports nulls.
