@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -99,7 +98,7 @@ struct Prepared {
   FieldBuildOptions options;
   ProbeTake take;
   std::shared_ptr<WalkTake> walk;  // none where pictures are listed
-  std::shared_ptr<std::atomic<bool>> repaired = std::make_shared<std::atomic<bool>>(false);
+  std::shared_ptr<PictureFaults> faults = std::make_shared<PictureFaults>();
 };
 
 void report(const BuildArguments& o, const Prepared& prepared, const FieldBuild& build,
@@ -148,7 +147,7 @@ void report(const BuildArguments& o, const Prepared& prepared, const FieldBuild&
 }
 
 // From a list of pictures.
-Status prepare_list(const BuildArguments& o, bool speaks, Prepared& prepared) {
+Status prepare_list(const BuildArguments& o, Prepared& prepared) {
   if (const Status none = check_no_walk_options(o.walk); !none) return none;
   auto projection = projection_of(o.pictures);
   if (!projection) return projection.error();
@@ -161,7 +160,7 @@ Status prepare_list(const BuildArguments& o, bool speaks, Prepared& prepared) {
   auto origin = origin_of(o.pictures, *list);
   if (!origin) return origin.error();
   prepared.options.made_from = *std::move(origin);
-  prepared.take = take_of(*std::move(list), prepared.repaired, speaks);
+  prepared.take = take_of(*std::move(list), prepared.faults);
   return {};
 }
 
@@ -203,8 +202,7 @@ Result<Prepared> prepare(const BuildArguments& o, FieldRanks& ranks) {
   if (o.json && is_standard_output(o.out))
     return usage("--out " + o.out + " is where --json writes, too, allowed: a file, or no --json");
   if (const Status writes = speaks ? check_can_write(o.out) : Status(); !writes) return writes.error();
-  const Status inputs =
-      is_take(o.probes) ? prepare_walk(o, speaks, prepared) : prepare_list(o, speaks, prepared);
+  const Status inputs = is_take(o.probes) ? prepare_walk(o, speaks, prepared) : prepare_list(o, prepared);
   if (!inputs) return inputs.error();
   const std::filesystem::path out(o.out);
   options.scratch_folder = out.parent_path();
@@ -229,12 +227,12 @@ Result<FieldBuild> build(const Prepared& prepared, FieldRanks& ranks) {
     bar->done(done);
   });
   bar.reset();
-  const bool said = *prepared.repaired;
-  if (ranks.any(said) && speaks && !said)
-    options.remark("values of pictures that are negative, NaN or infinite; read as 0");
-  if (built && speaks)
-    for (const std::string& remark : remarks_on_rays(prepared.take, *built)) options.remark(remark);
-  if (built && speaks && is_dark(built->field)) options.remark("no probe has any light: the field is dark");
+  if (!built) return built;  // on all ranks, which may not have one take
+  for (const std::string& remark : prepared.faults->remarks(prepared.take, ranks))
+    if (speaks) options.remark(remark);
+  if (!speaks) return built;
+  for (const std::string& remark : remarks_on_rays(prepared.take, *built)) options.remark(remark);
+  if (is_dark(built->field)) options.remark("no probe has any light: the field is dark");
   return built;
 }
 

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/field_pictures.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <utility>
 
 #include "cli/command.h"
@@ -12,9 +14,14 @@
 #include "interface/calibration_io.h"
 #include "interface/environment_io.h"
 #include "interface/option_range.h"
-#include "interface/printable.h"
 
 namespace lightwell::cli {
+namespace {
+
+// cd/m²: more than half a million suns. Fits and what stands over them take squares, which 1e19 has not in floats.
+constexpr float kMostRadiance = 1e15f;
+
+}  // namespace
 
 void add_picture_options(CLI::App& command, PictureArguments& o) {
   o.options = {
@@ -95,18 +102,52 @@ Result<std::string> origin_of(const PictureArguments& o, const ProbeList& list) 
   return std::string(text);
 }
 
-ProbeTake take_of(ProbeList pictures, std::shared_ptr<std::atomic<bool>> repaired, bool speaks) {
+void PictureFaults::set(std::size_t picture, std::uint64_t unseen_pixels, std::uint64_t negative_values) {
+  if (unseen_pixels + negative_values == 0) return;
+  const std::scoped_lock lock(mutex_);
+  faults_[picture] = {unseen_pixels, negative_values};
+}
+
+std::vector<std::string> PictureFaults::remarks(const ProbeTake& take, FieldRanks& ranks) const {
+  std::vector<std::uint64_t> counts(2 * take.positions.size());
+  for (const auto& [picture, faults] : faults_)
+    if (picture > 0 || ranks.rank() == 0)  // each rank has looked at the first one
+      std::copy(faults.begin(), faults.end(), counts.begin() + 2 * static_cast<std::ptrdiff_t>(picture));
+  ranks.sum(counts);
+  std::vector<std::string> lines;
+  const auto add = [&](std::size_t which, const std::string& what) {
+    std::uint64_t count = 0, pictures = 0;
+    std::string first;
+    for (std::size_t i = which; i < counts.size(); i += 2) {
+      if (counts[i] == 0) continue;
+      count += counts[i];
+      if (pictures++ == 0) first = take.name(i / 2);
+    }
+    if (count == 0) return;
+    std::string who = first;
+    if (pictures > 1) who += " and " + std::to_string(pictures - 1) + (pictures > 2 ? " others" : " other");
+    lines.push_back(who + ": " + std::to_string(count) + what);
+  };
+  add(0, " pixels are NaN, infinite or above 1e15 cd/m²; taken as not seen");
+  add(1, " values are negative; read as 0");
+  return lines;
+}
+
+ProbeTake take_of(ProbeList pictures, std::shared_ptr<PictureFaults> faults) {
   const auto list = std::make_shared<const ProbeList>(std::move(pictures));
   ProbeTake take;
   take.positions = list->positions;
   take.name = [list](std::size_t i) { return list->files[i].string(); };
-  take.picture = [list, repaired, speaks](std::size_t i) -> Result<LatLongImage> {
-    auto environment = read_environment(list->files[i]);
+  take.picture = [list, faults](std::size_t i) -> Result<LatLongImage> {
+    auto environment = read_environment(list->files[i], NotFinite::kept);
     if (!environment) return environment.error();
-    if (environment->not_finite + environment->negative > 0 && !repaired->exchange(true) && speaks)
-      std::fprintf(
-          stderr, "lightwell: %s: values that are negative, NaN or infinite; read as 0, here and in others\n",
-          printable(list->files[i].string()).c_str());
+    std::uint64_t unseen = 0;
+    for (Rgb& pixel : environment->image.pixels)
+      if (!(pixel.abs() <= kMostRadiance).all()) {
+        pixel.setConstant(std::numeric_limits<float>::quiet_NaN());
+        ++unseen;
+      }
+    faults->set(i, unseen, environment->negative);
     return std::move(environment->image);
   };
   return take;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <span>
 
@@ -27,6 +28,8 @@ class FieldRanks {
   // Good where all are; else on every rank the error of the lowest that has one.
   virtual Status agree(const Status& own) { return own; }
   [[nodiscard]] virtual bool any(bool own) { return own; }
+  // Every number is the sum of all ranks'.
+  virtual void sum(std::span<std::uint64_t> numbers) { (void)numbers; }
   // From rank 0 to all.
   virtual void broadcast(std::span<std::byte> bytes) { (void)bytes; }
   // From a rank to rank 0.

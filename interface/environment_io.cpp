@@ -23,13 +23,13 @@ Error bad(const std::string& name, const std::string& what) {
   return {ErrorKind::bad_input, name + ": " + what};
 }
 
-EnvironmentImage repair(LatLongImage image) {
+EnvironmentImage repair(LatLongImage image, NotFinite not_finite) {
   EnvironmentImage result;
   for (Rgb& pixel : image.pixels)
     for (int c = 0; c < 3; ++c) {
       if (!std::isfinite(pixel[c])) {
         ++result.not_finite;
-        pixel[c] = 0;
+        if (not_finite == NotFinite::zero) pixel[c] = 0;
       } else if (pixel[c] < 0) {
         ++result.negative;
         pixel[c] = 0;
@@ -55,7 +55,8 @@ std::string EnvironmentImage::remark(const std::filesystem::path& file) const {
   return what.empty() ? what : file.string() + ": " + what;
 }
 
-Result<EnvironmentImage> environment_from_bytes(std::string_view bytes, const std::string& name) {
+Result<EnvironmentImage> environment_from_bytes(std::string_view bytes, const std::string& name,
+                                                NotFinite not_finite) {
   try {
     bool converted = false;
     Result<LatLongImage> image = is_exr(bytes) ? read_exr(bytes, name, kPixelLimit, &converted)
@@ -63,7 +64,7 @@ Result<EnvironmentImage> environment_from_bytes(std::string_view bytes, const st
                                      ? read_radiance_hdr(bytes, name, kPixelLimit, &converted)
                                      : bad(name, "is neither an OpenEXR nor a Radiance HDR image");
     if (!image) return image.error();
-    EnvironmentImage environment = repair(std::move(image).value());
+    EnvironmentImage environment = repair(std::move(image).value(), not_finite);
     environment.converted = converted;
     return environment;
   } catch (const std::bad_alloc&) {
@@ -73,11 +74,11 @@ Result<EnvironmentImage> environment_from_bytes(std::string_view bytes, const st
   }
 }
 
-Result<EnvironmentImage> read_environment(const std::filesystem::path& file) {
+Result<EnvironmentImage> read_environment(const std::filesystem::path& file, NotFinite not_finite) {
   auto bytes = read_text_file(file, kFileLimit);
   if (!bytes) return bytes.error();
   if (bytes->empty()) return bad(file.string(), "is empty, expected an OpenEXR or Radiance HDR image");
-  return environment_from_bytes(*bytes, file.string());
+  return environment_from_bytes(*bytes, file.string(), not_finite);
 }
 
 Result<std::string> environment_to_exr(const LatLongImage& image) {

@@ -59,6 +59,11 @@ class MpiRanks final : public FieldRanks {
     return all != 0;
   }
 
+  void sum(std::span<std::uint64_t> numbers) override {
+    MPI_Allreduce(MPI_IN_PLACE, numbers.data(), count_of(numbers.size()), MPI_UINT64_T, MPI_SUM,
+                  MPI_COMM_WORLD);
+  }
+
   void broadcast(std::span<std::byte> bytes) override {
     MPI_Bcast(bytes.data(), count_of(bytes.size()), MPI_BYTE, 0, MPI_COMM_WORLD);
   }

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "interface/atomic_file.h"
@@ -168,6 +169,32 @@ TEST_F(FieldCommandTest, SaysWhereStandardOutputIsFullOrAskedForTwice) {
                  " --grid 5,4,5 --bounds 0,0,0,1,1,1 --out /dev/stdout --json | cat >" + path("none.vdb")});
   EXPECT_EQ(std::filesystem::file_size(path("none.vdb")), 0u);
   EXPECT_THAT(twice.err, HasSubstr("--out /dev/stdout is where --json writes, too"));
+}
+
+// What a picture does not show is not dark, and no number of it spoils the field.
+TEST_F(FieldCommandTest, PixelsThatAreNoLightWereNotSeen) {
+  ASSERT_EQ(build({"--out", path("whole.vdb")}).exit_code, 0);
+  const auto spoil = [&](const std::string& name, float value) {
+    LatLongImage image = read_environment(path(name))->image;
+    for (std::size_t i = 0; i < image.pixels.size() / 2; ++i) image.pixels[i].x() = value;
+    ASSERT_TRUE(write_environment(path(name), image));
+  };
+  spoil("p0.exr", std::numeric_limits<float>::quiet_NaN());
+  spoil("p4.exr", std::numeric_limits<float>::infinity());
+  spoil("p5.exr", 3e38f);
+  spoil("p6.exr", -std::numeric_limits<float>::infinity());
+  const auto built = build({"--out", path("f.vdb")});
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  EXPECT_THAT(built.err, HasSubstr("p0.exr and 3 others: 1024 pixels are NaN, infinite or above 1e15"));
+  const auto light = [&](const std::string& file) {
+    return nlohmann::json::parse(
+        lightwell({"field", "query", path(file), "--at", "0.5,0.5,0.5", "--json"}).out)["sh"];
+  };
+  const auto whole = light("whole.vdb"), spoilt = light("f.vdb");
+  // A linear field is known from fewer probes as well; as darkness four of 60 would be an error of some percent.
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(spoilt[i][c].get<double>(), whole[i][c].get<double>(), 0.01);
 }
 
 TEST_F(FieldCommandTest, APictureThatIsGoneLeavesWhatIsDone) {
