@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Lightwell Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <linux/capability.h>
 #include <malloc.h>
 #include <poll.h>
 #include <spdlog/pattern_formatter.h>
@@ -8,6 +9,7 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/signalfd.h>
+#include <sys/syscall.h>
 #include <systemd/sd-daemon.h>
 #include <unistd.h>
 
@@ -110,13 +112,20 @@ void reload(Daemon& daemon, const Arguments& arguments) {
   sd_notify(0, "READY=1");
 }
 
+bool may_hold_any_memory() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY) return true;
+  __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+  __user_cap_data_struct data[2] = {};
+  return syscall(SYS_capget, &header, data) == 0 && (data[0].effective & (1u << CAP_IPC_LOCK)) != 0;
+}
+
 // A page that the disk has to bring back costs a frame. Only what is in use is held, so that threads' stacks stay small.
 // Under a limit of locked memory allocations would fail later on, which is worse.
 void stay_in_memory() {
-  rlimit limit{};
-  if (getrlimit(RLIMIT_MEMLOCK, &limit) != 0 || (limit.rlim_cur != RLIM_INFINITY && geteuid() != 0)) return;
+  if (!may_hold_any_memory()) return;
   if (mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0)
-    spdlog::debug("memory may be paged out: {}", std::generic_category().message(errno));
+    spdlog::warn("memory may be paged out: {}", std::generic_category().message(errno));
 }
 
 // The watchdog is fed only while the frame path's loop turns.
