@@ -17,7 +17,7 @@ struct NearField {
 NearField point_sources(const MeasuredLamp& lamp);
 
 // Sources a spacing each way that a place this far from the sampling plane asks for: they stand no farther apart than a
-// quarter of its distance, up to 16.
+// third of its distance, up to 16.
 int subdivision_at(const NearField& lamp, double distance_m);
 
 // Of a surface at a point below the sampling plane (else 0); normal: unit. Lux, 0 or more. Where sources are

@@ -17,7 +17,7 @@ struct PositionGrid {
   std::vector<std::array<int, 2>> at;  // (u, v) of every place
   std::vector<double> deviation_m;     // of every place from the grid's
 };
-// The grid lies where most places agree: at the mean phase along each axis. places: at least one, finite and within 2^20
+// The grid lies where most places agree: at the mean phase along each axis. places: at least one, finite and within 2^29
 // spacings of each other.
 PositionGrid position_grid(std::span<const Vec2d> places_m, double spacing_m);
 

@@ -141,6 +141,20 @@ TEST(NearField, FluxIsThatOfTheLamp) {
   EXPECT_LT((luminous_flux(point_sources(finite_reflector())) / exact - 1).abs().maxCoeff(), 1e-3);
 }
 
+// Three spacings and one and a half: where another number of sources is taken. A step is no more than both err by.
+TEST(NearField, AnotherNumberOfSourcesIsNoStep) {
+  const NearField lamp = point_sources(finite_reflector());
+  for (const auto& [spacings, bound] : {std::pair(3.0, 1e-3), std::pair(1.5, 2e-3)}) {
+    const double below = spacings * kSpacing_m;
+    EXPECT_NE(subdivision_at(lamp, below * (1 - 1e-6)), subdivision_at(lamp, below * (1 + 1e-6)));
+    for (const double x : {0.0, 0.2 * kDistance_m}) {
+      const Rgbd near = illuminance(lamp, {x, 0, -below * (1 - 1e-6)}, Vec3d::UnitZ());
+      const Rgbd far = illuminance(lamp, {x, 0, -below * (1 + 1e-6)}, Vec3d::UnitZ());
+      EXPECT_LT((near / far - 1).abs().maxCoeff(), bound) << spacings;
+    }
+  }
+}
+
 TEST(NearField, IsDarkBehindTheSurfaceAndBehindTheLamp) {
   const NearField lamp = point_sources(finite_reflector());
   EXPECT_EQ(illuminance(lamp, {0, 0, -0.1}, -Vec3d::UnitZ()).maxCoeff(), 0);
