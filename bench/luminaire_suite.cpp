@@ -13,6 +13,7 @@
 
 #include "bench/chart.h"
 #include "bench/field_rows.h"
+#include "bench/lamp_location_rows.h"
 #include "bench/suite.h"
 #include "calibration/luminaire/lamp_build.h"
 #include "interface/plain_ray_file.h"
@@ -250,6 +251,7 @@ std::vector<Row> luminaire_suite(const Options& options) {
   std::vector<Row> rows = {build_row(rig, built)};
   for (Row& row : form_rows(rig.lamp, built, options)) rows.push_back(std::move(row));
   for (Row& row : ray_rows(options)) rows.push_back(std::move(row));
+  for (Row& row : lamp_location_rows(options)) rows.push_back(std::move(row));
   return rows;
 }
 
@@ -270,7 +272,9 @@ std::vector<Figure> luminaire_figures(const std::vector<Row>& rows) {
                                  ray_lines(rows),
                                  {0.1, 0.3, 1}}},
                                "lightwell bench --suite luminaire: reflector with filament, 17x17 positions "
-                               "a tenth of the planes' distance apart")}};
+                               "a tenth of the planes' distance apart")},
+          {"lamp-location", to_svg({lamp_location_chart(rows)},
+                                   "lightwell bench --suite luminaire: 1000 lamps at each distance")}};
 }
 
 }  // namespace lightwell::bench
