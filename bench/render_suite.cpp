@@ -363,6 +363,7 @@ std::vector<Row> render_suite(const Options& options) {
   if (asked("growth")) take(render_growth_rows(options));
   if (asked("gloss")) take(render_gloss_rows());
   if (asked("field light")) take(render_field_rows(options));
+  if (asked("lamp")) take(render_lamp_rows(options));
   if (asked("steadiness")) take(render_steadiness_rows(options));
   return rows;
 }

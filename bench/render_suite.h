@@ -25,6 +25,8 @@ std::vector<Row> render_steadiness_rows(const Options& options);
 std::vector<Row> render_gloss_rows();
 // A light field against harmonics that are the same everywhere.
 std::vector<Row> render_field_rows(const Options& options);
+// A lamp nearby, every position and fewer, against rays to each.
+std::vector<Row> render_lamp_rows(const Options& options);
 // Mitsuba 3 on the same scenes, by the script in options.peers_folder.
 std::vector<Row> mitsuba_rows(const std::vector<pictures::JudgedPicture>& judged, const Options& options);
 
