@@ -11,22 +11,9 @@
 namespace lightwell::render {
 namespace {
 
-constexpr std::size_t kMostSources = 256;  // layers of a texture, and rows of a block, that every driver has
-constexpr std::size_t kMostTexels = std::size_t{1}
-                                    << 26;  // of a lamp's images: 128 MB grey, 512 MB in colour
-
 struct SourceRow {  // Source of lamp_fragment.glsl (std140)
   float place_low[4], fit[4];
 };
-
-// The positions of a lamp that are taken together at least, so that its images fit.
-int least_group(const NearField& lamp) {
-  int group = 1;
-  while (source_count(lamp, group) > kMostSources ||
-         source_count(lamp, group) * lamp.intensity.planes.image_size() > kMostTexels)
-    ++group;
-  return group;
-}
 
 bool shines(const PlacedLamp& lamp) {
   return lamp.dimming > 0;
@@ -93,7 +80,7 @@ Result<LampShading::Part> LampShading::upload(LampSources sources) const {
   glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, wrap_across(sources.map));
   glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   if (grey)
-    for (const GLenum channel : {GL_TEXTURE_SWIZZLE_G, GL_TEXTURE_SWIZZLE_B})
+    for (const GLenum channel : {GLenum{GL_TEXTURE_SWIZZLE_G}, GLenum{GL_TEXTURE_SWIZZLE_B}})
       glTexParameteri(GL_TEXTURE_2D_ARRAY, channel, GL_RED);
   if (glGetError() == GL_OUT_OF_MEMORY)
     return Error{ErrorKind::failed, "the driver has no memory for a lamp's images"};

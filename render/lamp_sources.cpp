@@ -102,6 +102,15 @@ std::size_t source_count(const NearField& lamp, int group) {
   return along(lamp.intensity.planes.positions[0]) * along(lamp.intensity.planes.positions[1]);
 }
 
+int least_group(const NearField& lamp) {
+  int group = 1;
+  while (group < largest_group(lamp) &&
+         (source_count(lamp, group) > kMostSources ||
+          source_count(lamp, group) * lamp.intensity.planes.image_size() > kMostTexels))
+    ++group;
+  return group;
+}
+
 int largest_group(const NearField& lamp) {
   return std::max(lamp.intensity.planes.positions[0], lamp.intensity.planes.positions[1]);
 }

@@ -42,6 +42,12 @@ struct LampSources {
 LampSources sources_of(const NearField& lamp, int group);
 // How many that are at the most.
 std::size_t source_count(const NearField& lamp, int group);
+// What a driver is asked to hold: layers of a texture, and rows of a block, that every driver has; texels of a lamp's images,
+// 128 MB grey, 512 MB in colour.
+inline constexpr std::size_t kMostSources = 256;
+inline constexpr std::size_t kMostTexels = std::size_t{1} << 26;
+// The positions a side that are taken together at least for that; 1: none need be.
+int least_group(const NearField& lamp);
 // One group of all positions.
 int largest_group(const NearField& lamp);
 

@@ -101,6 +101,9 @@ class Session {
   void say_remarks() const {
     for (const std::string& remark : remarks_on_lamps(options_.luminaires, lamps_.lamps(), scene_))
       say(remark);
+    if (const int side = renderer_->lamps().counts().map_side; side > 0 && side < options_.shadow_size)
+      say("lamps have so many positions that their shadow maps are of " + std::to_string(side) +
+          " texels a side, where --shadow-size asks for " + std::to_string(options_.shadow_size));
     const Renderer::LostShadows lost = renderer_->lost_shadows();
     if (2 * lost.objects > lost.of)
       say(lost_shadows_text(options_.scene.string(), lost.objects, lost.of, lost.texel_m,

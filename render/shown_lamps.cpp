@@ -3,10 +3,12 @@
 #include "render/shown_lamps.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "interface/luminaire_file.h"
 #include "render/lamp_detail.h"
+#include "render/lamp_sources.h"
 
 namespace lightwell::render {
 namespace {
@@ -95,6 +97,13 @@ std::vector<std::string> remarks_on_lamps(const std::vector<LuminaireOptions>& o
   for (std::size_t i = 0; i < lamps.size(); ++i) {
     const PlacedLamp& lamp = lamps[i];
     if (!(lamp.dimming > 0)) continue;
+    if (lamp.lamp->near && least_group(*lamp.lamp->near) > 1) {
+      const std::array<int, 2>& positions = lamp.lamp->near->intensity.planes.positions;
+      remarks.push_back(options[i].file.string() + ": " + std::to_string(positions[0]) + "x" +
+                        std::to_string(positions[1]) + " positions are drawn as " +
+                        std::to_string(source_count(*lamp.lamp->near, least_group(*lamp.lamp->near))) +
+                        ": neighbours together");
+    }
     const Eigen::Isometry3d lamp_from_world = lamp.world_from_lamp.inverse();
     const auto lit = [&](const Receivers::Place& place) {
       const Vec3d point = lamp_from_world * place.point.cast<double>();

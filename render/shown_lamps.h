@@ -36,7 +36,7 @@ class ShownLamps {
 
 // Luminance of a white horizontal surface at a place under lamps, as white_floor_cd_m2 of lights. World.
 float white_floor_cd_m2(std::span<const PlacedLamp> lamps, const Vec3d& place);
-// Lamps that light nothing of the scene from where they stand, a sentence each.
+// Lamps that light nothing of the scene from where they stand, or have more positions than are drawn, a sentence each.
 std::vector<std::string> remarks_on_lamps(const std::vector<LuminaireOptions>& options,
                                           std::span<const PlacedLamp> lamps, const Scene& scene);
 

@@ -256,5 +256,113 @@ TEST_F(LampPictures, OnlyALampThatMovedHasItsMapsDrawnAgain) {
   EXPECT_EQ(moved.rgba, picture_of(another, lamps, stage_camera()).rgba);
 }
 
+TEST_F(LampPictures, LampFarAwayIsADirectionalLightOnEveryMaterialAndOverAPlate) {
+  Scene scene;
+  add_ground(scene, lambertian(Rgb::Constant(0.6f)), false, 1.5f);
+  Material glossy = lambertian({0.2f, 0.3f, 0.1f});
+  glossy.specular = Rgb::Constant(0.4f);
+  glossy.exponent = 12;
+  add_sphere(scene, {-0.4f, 0.3f, 0}, 0.25f, glossy, true, 24);
+  Material metal;
+  metal.base_color = {0.9f, 0.6f, 0.2f};
+  metal.metallic = 0.7f;
+  metal.roughness = 0.4f;
+  add_sphere(scene, {0.4f, 0.3f, 0}, 0.25f, metal, true, 24);
+  constexpr double kAway = 500, kLux = 1000;
+  FarField even;
+  even.vertical_deg = {0, 180};
+  even.candela = {kLux * kAway * kAway, kLux * kAway * kAway};
+  const Vec3d toward = Vec3d(0.4, 0.8, 0.5).normalized();
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = kAway * toward + Vec3d(0, 0.3, 0);
+  const LightSet lights = light_set({{toward.cast<float>(), Rgb::Constant(static_cast<float>(kLux))}});
+  render::Plate plate;
+  plate.width = plate.height = 1;
+  plate.pixels = {Rgb::Constant(0.5f)};
+  for (const bool over_a_plate : {false, true}) {
+    auto by_lamp = renderer_of(scene), by_light = renderer_of(scene);
+    if (over_a_plate) {
+      ASSERT_TRUE(by_lamp.set_plate(plate, 100).ok());
+      ASSERT_TRUE(by_light.set_plate(plate, 100).ok());
+    }
+    const auto lamp = picture_of(by_lamp, {{shared({"", {}, even}), pose, 1}}, stage_camera());
+    const auto light = picture_of(by_light, {}, stage_camera(), lights);
+    // Shadows' edges fall into other texels; everything else is the same.
+    std::size_t off = 0, bright = 0;
+    for (std::size_t k = 0; k < light.rgba.size(); ++k) {
+      if (light.rgba[k] > 1) ++bright;
+      if (std::abs(lamp.rgba[k] - light.rgba[k]) > 0.01f * light.rgba[k] + 0.01f) ++off;
+    }
+    EXPECT_GT(bright, 10000u);
+    EXPECT_LT(off, light.rgba.size() / 100) << over_a_plate;
+  }
+}
+
+TEST_F(LampPictures, PatternFinerThanThePictureIsSeenAsItsMean) {
+  // A chequerboard of its pixels; the floor under it shows twenty of them in a pixel of the picture.
+  NearField lamp = patterned_lamp(1, 1, 0.01, 512);
+  for (int t = 0; t < 512; ++t)
+    for (int s = 0; s < 512; ++s)
+      lamp.intensity.image(0, 0)[t * 512 + s] = Rgb::Constant((s + t) % 2 == 0 ? 20.f : 0.f);
+  Scene scene;
+  add_ground(scene, lambertian(Rgb::Constant(static_cast<float>(kPi) / 4)), false, 1.5f);
+  auto renderer = renderer_of(scene);
+  const std::vector<PlacedLamp> lamps = {{shared({"", lamp, {}}), aimed_down({0, 0.5, 0}), 1}};
+  const SceneCamera camera = camera_at({0, 4, 0.01f}, {0, 0, 0}, 0.5f);
+  const auto picture = picture_of(renderer, lamps, camera);
+  const render::View view = render::make_view(camera, kWidth, kHeight);
+  for (int y = kHeight / 2 - 4; y < kHeight / 2 + 4; ++y)
+    for (int x = kWidth / 2 - 4; x < kWidth / 2 + 4; ++x) {
+      const Vec3f ray = pixel_ray(view, x, y, kWidth, kHeight);
+      const Vec3d point = (view.eye - ray * (view.eye.y() / ray.y())).cast<double>();
+      // 10 cd on the average from half a metre above, of which a quarter returns.
+      const double expected = 10 * 0.5 / std::pow((point - Vec3d(0, 0.5, 0)).norm(), 3) / 4;
+      EXPECT_NEAR(rgb(picture, x, y)[0], expected, 0.02 * expected) << x << " " << y;
+    }
+}
+
+TEST_F(LampPictures, MorePositionsThanADriverHoldsAreDrawnTogether) {
+  const Scene scene = stage();
+  const NearField lamp = patterned_lamp(17, 16, 0.01, 32);
+  ASSERT_EQ(render::least_group(lamp), 2);
+  const std::vector<PlacedLamp> lamps = {{shared({"", lamp, {}}), aimed_down({0, 1, 0}), 1}};
+  const auto reference = lamp_picture_by_force(scene, lamps, stage_camera(), kWidth, kHeight);
+  auto renderer = renderer_of(scene);
+  const PictureDifference off = difference(picture_of(renderer, lamps, stage_camera()), reference);
+  EXPECT_EQ(renderer.lamps().counts().sources, 72u);
+  EXPECT_LE(off.relative_rmse, kMostError);
+  EXPECT_NEAR(off.light, 1, 0.01);
+}
+
+TEST_F(LampPictures, ManyMapsAreSmallerThanFew) {
+  const int limit = render::ShadowAtlas::side_limit();
+  EXPECT_EQ(render::LampMaps::side_of(256, 1), 1024);
+  EXPECT_EQ(render::LampMaps::side_of(256, 4), 512);
+  EXPECT_EQ(render::LampMaps::side_of(256, 63), 256);
+  for (const std::size_t maps : {64u, 256u, 1536u}) {
+    const int side = render::LampMaps::side_of(1024, maps);
+    EXPECT_GE(side, 16);
+    EXPECT_LE(side * static_cast<int>(std::ceil(std::sqrt(maps))), limit) << maps;
+  }
+}
+
+TEST_F(LampPictures, FewerPointsStayWithinTheErrorThatIsAsked) {
+  // On its own floor the lamp's whole pattern counts: every point drawn against those that a bound leaves.
+  const Scene scene = stage();
+  const std::vector<PlacedLamp> lamps = {
+      {shared({"", patterned_lamp(9, 7, 0.004, 32), {}}), aimed_down({0, 1.5, 0}), 1}};
+  auto all = renderer_of(scene), fewer = renderer_of(scene, 0.03);
+  const auto exact = picture_of(all, lamps, stage_camera());
+  const auto together = picture_of(fewer, lamps, stage_camera());
+  EXPECT_LT(fewer.lamps().counts().sources, all.lamps().counts().sources);
+  double off = 0, sum = 0;
+  for (std::size_t k = 0; k < exact.rgba.size(); ++k) {
+    if (k % 4 == 3) continue;
+    off += std::pow(static_cast<double>(exact.rgba[k] - together.rgba[k]), 2);
+    sum += std::pow(static_cast<double>(exact.rgba[k]), 2);
+  }
+  EXPECT_LE(std::sqrt(off / sum), 0.03);
+}
+
 }  // namespace
 }  // namespace lightwell
