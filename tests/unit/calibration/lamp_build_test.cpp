@@ -70,22 +70,22 @@ SimulatedRig small_rig(int positions = 11) {
 // The whole way: two slides, a screen that stays while the lamp moves, a camera beside it with a bent lens, vignetting, a
 // response of 12 bits, noise, and light in the room.
 SimulatedRig camera_rig() {
-  SimulatedRig rig = small_rig();
+  SimulatedRig rig = small_rig(9);
   rig.rig.moves = Rig::Moves::lamp;
   rig.rig.unit = Rig::Unit::codes;
   rig.rig.screen_reflectance = 0.85;
   rig.rig.peak_transmission = 0.8;
   rig.rig.dark = "dark.exr";
-  rig.rig.pixels = {60, 60};
+  rig.rig.pixels = {50, 50};
   rig.rig_exposure_us = rig.rig.dark_exposure_us = 20000;
-  rig.picture_size = {200, 200};
+  rig.picture_size = {160, 160};
   rig.ambient_lux = 3;
   rig.noise = 1e-3;
   Calibration camera;
   camera.response = {LinearResponse{64, 40}, 12, 64, 4000, 10000};
   camera.lens.image_size = rig.picture_size;
-  camera.lens.focal = {105, 106};
-  camera.lens.center = {99, 101};
+  camera.lens.focal = {84, 85};
+  camera.lens.center = {79, 81};
   camera.lens.k = {-0.03, 0.004, 0, 0};
   camera.lens.max_theta_rad = 1.4;
   camera.flat.image_size = rig.picture_size;
@@ -94,7 +94,7 @@ SimulatedRig camera_rig() {
   return rig;
 }
 
-// Of 1100 codes one is noise, quantisation half of one; a pixel is 4 mm wide on a screen of 36 cm.
+// Of 1100 codes one is noise, quantisation half of one; a pixel is 5 mm wide on a screen of 36 cm.
 TEST(LampBuild, ACameraBesideTheScreenSeesTheLamp) {
   SimulatedRig rig = camera_rig();
   const test::TemporaryFolder folder;
