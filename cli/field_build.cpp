@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -113,9 +114,13 @@ void report(const BuildArguments& o, const Prepared& prepared, const FieldBuild&
     if (prepared.walk) print_walk(*prepared.walk);
     std::printf("probes            %zu, %d directions, %.1f %% of the sphere seen\n", probes,
                 build.directions, 100 * build.coverage);
-    if (build.support > 0)
+    if (build.support > 0 && std::isfinite(build.held_out_error))
       std::printf("fit               over %d rays, held-out rays err %.3g of the RMS radiance\n",
                   build.support, build.held_out_error);
+    else if (build.support > 0)
+      std::printf(
+          "fit               over %d rays; all in one place: how far the field errs cannot be foretold\n",
+          build.support);
     std::printf("confidence        %.1f %% of all directions at all points have a measured ray near\n",
                 100 * confidence);
     std::printf("written           %s, %.2f MB, %zu of %zu points, error %.2g\n", o.out.c_str(),

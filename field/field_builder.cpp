@@ -19,7 +19,7 @@ namespace {
 
 // Of what makes numbers from pictures: one more wherever the same take comes to give other bits, so that an interrupted
 // build of another version is not gone on with. (Its kernels give the same bits on every machine.)
-constexpr int kNumerics = 2;
+constexpr int kNumerics = 3;
 
 constexpr std::size_t kHeldOutBuckets = 24;  // spread over the sphere
 constexpr std::size_t kHeldOutOfABucket = 4;

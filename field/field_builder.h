@@ -49,7 +49,7 @@ struct FieldBuild {
   int directions = 0;         // that are seen
   double coverage = 0;        // part of the sphere that a probe sees
   int support = 0;            // rays of a fit, of best
-  double held_out_error = 0;  // SupportChoice::held_out_error, of best
+  double held_out_error = 0;  // SupportChoice::held_out_error, of best; NaN: nothing can be foretold
   // Of best, on rank 0: RayConsistency.
   std::vector<DoubtfulProbe> doubtful;
   double close_difference = 0;

@@ -14,16 +14,13 @@ namespace {
 // Of the squared support: far below the spread of rays all around (a tenth), far above that of a line.
 constexpr float kSlopeRidge = 3e-4f;
 
-}  // namespace
-
-LocalFit fit_locally(NearestSamples& samples, const Eigen::Vector2f& at, int support,
-                     std::uint32_t left_out) {
-  const auto wanted = static_cast<std::size_t>(support) + (left_out == kNoSample ? 0 : 1);
-  const auto found = samples.find(at, wanted);
+// To the first `wanted` of what was found about `at`, but for those no farther than left_out_square; one at least is left.
+LocalFit fit_beyond(float left_out_square, std::span<const NearestSamples::Neighbour> found,
+                    std::size_t wanted, const NearestSamples& samples, const Eigen::Vector2f& at) {
   const std::size_t count = std::min(found.size(), wanted);
   float square_support = 0, nearest = std::numeric_limits<float>::max();
   for (std::size_t i = 0; i < count; ++i)
-    if (found[i].sample != left_out) {
+    if (found[i].square_distance > left_out_square) {
       nearest = std::min(nearest, found[i].square_distance);
       square_support = std::max(square_support, found[i].square_distance);
     }
@@ -39,7 +36,7 @@ LocalFit fit_locally(NearestSamples& samples, const Eigen::Vector2f& at, int sup
   Eigen::Matrix<float, 2, 3> product = Eigen::Matrix<float, 2, 3>::Zero();
   Eigen::Array3f least = Eigen::Array3f::Constant(std::numeric_limits<float>::max()), most = -least;
   for (std::size_t i = 0; i < count; ++i) {
-    if (found[i].sample == left_out) continue;
+    if (!(found[i].square_distance > left_out_square)) continue;
     const PlaneSample& sample = samples.samples()[found[i].sample];
     const float inside = 1 - found[i].square_distance / square_support;
     const float weight = inside > 0 ? inside * inside : 0;
@@ -69,6 +66,31 @@ LocalFit fit_locally(NearestSamples& samples, const Eigen::Vector2f& at, int sup
   fit.radiance =
       (mean - (slope.transpose() * centroid).array()).max(least - beyond).min(most + beyond).max(0.0f);
   return fit;
+}
+
+}  // namespace
+
+LocalFit fit_locally(NearestSamples& samples, const Eigen::Vector2f& at, int support) {
+  const auto wanted = static_cast<std::size_t>(support);
+  return fit_beyond(-1, samples.find(at, wanted), wanted, samples, at);
+}
+
+std::optional<LocalFit> foretell(NearestSamples& samples, std::size_t held_out, int support) {
+  constexpr float kSquare = kOnePlace_cells * kOnePlace_cells;
+  const Eigen::Vector2f at = samples.samples()[held_out].at;
+  const auto others = static_cast<std::size_t>(support);
+  for (std::size_t wanted = others + 1;;) {
+    const auto found = samples.find(at, wanted);
+    const std::size_t count = std::min(found.size(), wanted);
+    const auto here = static_cast<std::size_t>(
+        std::count_if(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count),
+                      [](const auto& near) { return near.square_distance <= kSquare; }));
+    if (here == samples.samples().size()) return std::nullopt;
+    const std::size_t needed = here + others;
+    if (needed == wanted || (needed > wanted && count < wanted))
+      return fit_beyond(kSquare, found, wanted, samples, at);
+    wanted = needed < wanted ? needed : needed + here;  // there may be more in this place
+  }
 }
 
 namespace {

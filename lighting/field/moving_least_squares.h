@@ -4,7 +4,7 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
+#include <optional>
 #include <vector>
 
 #include "lighting/field/nearest_samples.h"
@@ -21,12 +21,17 @@ struct LocalFit {
   Eigen::Array3f radiance = Eigen::Array3f::Zero();
   float nearest_cells = 0;  // distance of the nearest ray
 };
-inline constexpr std::uint32_t kNoSample = std::numeric_limits<std::uint32_t>::max();
-// left_out: a sample that takes no part, for held-out errors; at least one other must be there.
-LocalFit fit_locally(NearestSamples& samples, const Eigen::Vector2f& at, int support,
-                     std::uint32_t left_out = kNoSample);
+// samples: at least one.
+LocalFit fit_locally(NearestSamples& samples, const Eigen::Vector2f& at, int support);
 
-// The same, but for rounding, at every pixel of the plane that a grid point reads, the others 0; known where a ray passes within kNearCells. image is sized to the plane.
+// A sample held out: the same at its place from the `support` nearest that lie farther than kOnePlace_cells from it.
+// Those within are, like itself, what was measured there (a picture taken twice, a walk that stood still), and say nothing
+// of how well a place between rays is foretold. None where all samples are in that place.
+inline constexpr float kOnePlace_cells = 0.01f;
+std::optional<LocalFit> foretell(NearestSamples& samples, std::size_t held_out, int support);
+
+// fit_locally, but for rounding, at every pixel of the plane that a grid point reads, the others 0; known where a ray passes
+// within kNearCells. image is sized to the plane.
 // samples: at least one. Keeps scratch memory: for one thread at a time.
 class MovingLeastSquares {
  public:

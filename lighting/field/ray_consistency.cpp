@@ -33,8 +33,8 @@ void RayConsistency::add(NearestSamples& samples, std::span<const Rgb> radiance,
   std::vector<double> errors(rays.size());
   double square = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const LocalFit fit = fit_locally(samples, rays[i].at, support, static_cast<std::uint32_t>(i));
-    errors[i] = std::sqrt(energy(fit.radiance - rays[i].radiance));
+    const auto fit = foretell(samples, i, support);
+    errors[i] = fit ? std::sqrt(energy(fit->radiance - rays[i].radiance)) : 0;
     square += energy(rays[i].radiance);
     // Itself and the nearest other: which of the two is not known, so that one of them is this ray or lies upon it.
     const auto near = samples.find(rays[i].at, 2);

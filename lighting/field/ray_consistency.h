@@ -25,9 +25,9 @@ class RayConsistency {
   explicit RayConsistency(std::size_t probes) : rays_(probes), contradicting_(probes) {}
 
   // One direction. samples: of all probes whose radiance is not NaN, in their order; support: rays of a fit. Each ray is
-  // foretold from all others; it contradicts where that fails by more than six times the median of all, by more than a
-  // twentieth of the direction's RMS radiance, and by more than for any of the `support` rays around it: what a wrong
-  // ray does to those that are foretold from it is less than what it does to itself.
+  // foretold from those of other places; it contradicts where that fails by more than six times the median of all, by more
+  // than a twentieth of the direction's RMS radiance, and by more than for any of the `support` rays around it: what a
+  // wrong ray does to those that are foretold from it is less than what it does to itself.
   void add(NearestSamples& samples, std::span<const Rgb> radiance, int support);
 
   // Probes of whose rays more than a third contradict, the worst first; among directions that have any light.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lighting/field/moving_least_squares.h"
 
@@ -16,14 +17,15 @@ constexpr std::size_t kForetold = 256;  // of a direction
 
 void SupportChoice::add(NearestSamples& samples) {
   const std::size_t count = samples.samples().size();
-  if (count < 2) return;
   const std::size_t step = (count + kForetold - 1) / kForetold;
   for (std::size_t i = 0; i < count; i += step) {
     const PlaneSample& sample = samples.samples()[i];
-    square_radiance_ += sample.radiance.square().cast<double>().sum();
     for (std::size_t s = 0; s < kSupports.size(); ++s) {
-      const LocalFit fit = fit_locally(samples, sample.at, kSupports[s], static_cast<std::uint32_t>(i));
-      square_error_[s] += (fit.radiance - sample.radiance).square().cast<double>().sum();
+      const auto fit = foretell(samples, i, kSupports[s]);
+      if (!fit) break;  // by no support
+      if (s == 0) square_radiance_ += sample.radiance.square().cast<double>().sum();
+      square_error_[s] += (fit->radiance - sample.radiance).square().cast<double>().sum();
+      has_foretold_ = true;
     }
   }
 }
@@ -35,6 +37,7 @@ int SupportChoice::best() const {
 }
 
 double SupportChoice::held_out_error() const {
+  if (!has_foretold_) return std::numeric_limits<double>::quiet_NaN();
   if (!(square_radiance_ > 0)) return 0;
   return std::sqrt(*std::min_element(square_error_.begin(), square_error_.end()) / square_radiance_);
 }

@@ -218,6 +218,15 @@ TEST_F(FieldCommandTest, SaysWhatOneProbeDoesNotDetermine) {
   EXPECT_THAT(built.err, HasSubstr("in one place: how light changes from place to place is not determined"));
 }
 
+TEST_F(FieldCommandTest, OfOnePlaceNothingIsForetold) {
+  std::ofstream(path("twice.csv")) << "x,y,z,file\n0.5,0.5,0.5,p0.exr\n0.5,0.5,0.5,p0.exr\n";
+  const auto said = build({"--out", path("f.vdb")}, "twice.csv");
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_THAT(said.out, HasSubstr("all in one place: how far the field errs cannot be foretold"));
+  const auto report = nlohmann::json::parse(build({"--out", path("f.vdb"), "--json"}, "twice.csv").out);
+  EXPECT_TRUE(report["held_out_error"].is_null());
+}
+
 TEST_F(FieldCommandTest, AFullDiskIsOneLineAndLeavesNothing) {
   ChildProcess::Options options;
   options.file_bytes = 100000;  // the sorted samples need 60 · 600 · 12 bytes

@@ -121,6 +121,59 @@ TEST(SupportChoice, IsFewForAnEdgeAndManyForNoise) {
   EXPECT_NEAR(noisy.held_out_error(), 0.3 / std::sqrt(3), 0.03);
 }
 
+// A picture that was taken twice foretells itself, which says nothing of places between pictures.
+TEST(SupportChoice, ForetellsFromOtherPlaces) {
+  std::mt19937 random(9);
+  std::normal_distribution<float> noise(1, 0.3f);
+  const auto once =
+      scattered(300, [&](const Eigen::Vector2f&) { return Eigen::Array3f(noise(random), 1, 1); });
+  const auto error_of_copies = [&](int copies) {
+    std::vector<PlaneSample> samples;
+    for (int copy = 0; copy < copies; ++copy)
+      for (PlaneSample sample : once) {
+        sample.at.x() += 0.004f * static_cast<float>(copy % 2);  // as a tracker trembles
+        samples.push_back(sample);
+      }
+    NearestSamples nearest;
+    nearest.build(samples);
+    SupportChoice choice;
+    choice.add(nearest);
+    return choice.held_out_error();
+  };
+  // .3 of noise in one of three channels of about 1: .3 / √3 at least, whatever is foretold from.
+  for (const int copies : {1, 2, 5, 50})
+    EXPECT_GT(error_of_copies(copies), 0.95 * 0.3 / std::sqrt(3)) << copies;
+}
+
+TEST(SupportChoice, OfOnePlaceForetellsNothing) {
+  for (const std::size_t count : {1u, 7u, 200u}) {
+    const std::vector<PlaneSample> samples(count, {{1, 2}, {3, 4, 5}});
+    NearestSamples nearest;
+    nearest.build(samples);
+    SupportChoice choice;
+    choice.add(nearest);
+    EXPECT_TRUE(std::isnan(choice.held_out_error())) << count;
+    EXPECT_EQ(choice.best(), 13);
+    EXPECT_FALSE(foretell(nearest, 0, 4).has_value());
+  }
+}
+
+// Among copies a ray's fit is what it is without them.
+TEST(MovingLeastSquares, OfAHeldOutRayLeaveOutItsWholePlace) {
+  const auto once = scattered(60, plane_of_light);
+  std::vector<PlaneSample> samples = once;
+  samples.insert(samples.end(), 100, samples[20]);
+  NearestSamples alone, among;
+  alone.build(once);
+  among.build(samples);
+  for (const int support : {4, 13, 40}) {
+    const auto expected = foretell(alone, 20, support), found = foretell(among, 20, support);
+    ASSERT_TRUE(expected && found);
+    EXPECT_GT(found->nearest_cells, kOnePlace_cells);
+    EXPECT_LT((found->radiance - expected->radiance).abs().maxCoeff(), 1e-5f) << support;
+  }
+}
+
 TEST(SupportChoice, OfDarknessIsTheMiddle) {
   SupportChoice choice;
   NearestSamples nearest;
