@@ -154,10 +154,10 @@ void report(const BuildArguments& o, const Prepared& prepared, const FieldBuild&
 // From a list of pictures.
 Status prepare_list(const BuildArguments& o, Prepared& prepared) {
   if (const Status none = check_no_walk_options(o.walk); !none) return none;
+  if (const Status other = check_output_is_no_input(o.out, {o.pictures.lens}); !other) return other;
   auto projection = projection_of(o.pictures);
   if (!projection) return projection.error();
   prepared.options.projection = *std::move(projection);
-  if (const Status other = check_output_is_no_input(o.out, {o.pictures.lens}); !other) return other;
   auto list = read_probe_list(o.probes);
   if (!list) return list.error();
   for (const std::filesystem::path& file : list->files)

@@ -3,6 +3,8 @@
 #include "field/field_builder.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <mutex>
 #include <optional>
 #include <sstream>
@@ -19,7 +21,7 @@ namespace {
 
 // Of what makes numbers from pictures: one more wherever the same take comes to give other bits, so that an interrupted
 // build of another version is not gone on with. (Its kernels give the same bits on every machine.)
-constexpr int kNumerics = 3;
+constexpr int kNumerics = 4;
 
 constexpr std::size_t kHeldOutBuckets = 24;  // spread over the sphere
 constexpr std::size_t kHeldOutOfABucket = 4;
@@ -88,11 +90,15 @@ class Builder {
     auto saved = std::chrono::steady_clock::now();
     while (done.parts < kFieldParts) {
       const std::size_t together = std::min(ranks(), kFieldParts - static_cast<std::size_t>(done.parts));
+      seen_ = {};
       Status summed;
       if (rank() < together) summed = sum_part(static_cast<std::size_t>(done.parts), part, estimators);
       if (summed = ranks_.agree(summed); !summed) return summed;
       add_parts(static_cast<std::size_t>(done.parts), together, part, total);
       done.parts += together;
+      ranks_.sum(seen_);
+      done.seen_directions += seen_[0];
+      done.seen_psr += seen_[1];
       Status kept;
       if (const auto now = std::chrono::steady_clock::now();
           rank() == 0 && state_.is_kept() && now - saved >= options_.save_every) {
@@ -102,6 +108,8 @@ class Builder {
       if (kept = ranks_.agree(kept); !kept) return kept;
     }
     if (rank() == 0) build.field = std::move(total).take();
+    build.directions = static_cast<int>(done.seen_directions);
+    build.coverage = std::min(1.0, static_cast<double>(done.seen_psr) * 1e-12 / (4 * kPi));
     return {};
   }
 
@@ -165,6 +173,7 @@ class Builder {
         batch[d].harmonics = bins_.harmonics().col(static_cast<Eigen::Index>(first_ + d)).cast<float>();
         batch[d].known_share = static_cast<float>(direction.solid_angle_sr / (4 * kPi));
       });
+      count_seen();
       parallel_for(static_cast<std::size_t>(sums.slabs()), options_.threads,
                    [&](std::size_t z, unsigned) { sums.add(batch, static_cast<int>(z)); });
       // As if the other ranks were as far.
@@ -173,6 +182,18 @@ class Builder {
       report(probes() + std::min(before + here * ranks(), bins_.directions().size()));
     }
     return {};
+  }
+
+  // Of the loaded directions those that a probe saw: what the projection shows may be NaN in all pictures.
+  void count_seen() {
+    for (std::size_t d = 0; d < width(); ++d) {
+      const auto radiance = radiance_of(d);
+      if (std::all_of(radiance.begin(), radiance.end(), [](const Rgb& r) { return std::isnan(r.x()); }))
+        continue;
+      ++seen_[0];
+      seen_[1] +=
+          static_cast<std::uint64_t>(std::llround(bins_.directions()[first_ + d].solid_angle_sr * 1e12));
+    }
   }
 
   // The parts of all ranks to the total, in order.
@@ -271,6 +292,8 @@ class Builder {
   SampleStore store_;
   std::size_t first_ = 0, last_ = 0;
   std::vector<Rgb> by_probe_, by_direction_;
+  std::array<std::uint64_t, 2> seen_ =
+      {};  // directions and picosteradians of this rank's part, then of all ranks'
 };
 
 Status check_picture(const LatLongImage& picture, const ProbeProjection& projection,
@@ -375,8 +398,6 @@ Result<FieldBuild> build_field(const ProbeTake& take, const FieldBuildOptions& o
   if (ranks.rank() == 0) say_what_was_found(*state, options);
   Builder builder(take, options, progress, ranks, *state, *bins);
   FieldBuild build;
-  build.directions = static_cast<int>(bins->directions().size());
-  build.coverage = bins->coverage();
   if (const Status sorted = builder.sort_pictures(first->width, first->height); !sorted) {
     // What was sorted now was quick to get, and a bad picture's take will be another one. What stood there before may be
     // hours of sums, and a picture that is gone may come back.

@@ -46,8 +46,8 @@ struct FieldBuildOptions {
 
 struct FieldBuild {
   LightField field;           // on rank 0 alone
-  int directions = 0;         // that are seen
-  double coverage = 0;        // part of the sphere that a probe sees
+  int directions = 0;         // that a probe saw: in its picture, and not NaN
+  double coverage = 0;        // part of the sphere that they are, 0 to 1
   int support = 0;            // rays of a fit, of best
   double held_out_error = 0;  // SupportChoice::held_out_error, of best; NaN: nothing can be foretold
   // Of best, on rank 0: RayConsistency.

@@ -46,11 +46,14 @@ class FieldState {
   [[nodiscard]] Found found() const { return found_; }
   [[nodiscard]] bool is_kept() const { return kept_; }
 
-  // Where the sums stand: parts added, and what `best` chose.
+  // Where the sums stand: parts added, what `best` chose, and what was seen by any probe so far.
   struct Progress {
     std::uint64_t parts = 0;
     std::int64_t support = 0;
     double held_out_error = 0;
+    std::uint64_t seen_directions = 0;
+    std::uint64_t seen_psr =
+        0;  // solid angle, picosteradians: whole, so that the order of adding does not matter
   };
   Status save(const Progress& progress, const FieldSums& sums) const;
   // Into sums of the same size; nullopt, and sums as they were, where there are none to be trusted.

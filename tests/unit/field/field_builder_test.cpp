@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "tests/support/analytic_fields.h"
 #include "tests/support/temporary_folder.h"
@@ -80,6 +81,24 @@ TEST_F(FieldBuilder, OneProbeIsTheSameEverywhereAndKnownOnlyAlongItsRays) {
   EXPECT_GT(a.radiance(0, 0), 1);
   EXPECT_LT(a.confidence, 0.5);
   EXPECT_GT(light_at(build->field, Vec3d(0.5, 0.5, 0.5)).confidence, 0.99);
+}
+
+// What the projection could show and no picture has, as of a fisheye's walk, is no part of what was seen.
+TEST_F(FieldBuilder, CountsWhatIsInThePicturesNotWhatCouldBe) {
+  ProbeTake take = take_of(test::linear_field, test::random_positions(9, 3), 24);
+  const auto whole = take.picture;
+  take.picture = [whole](std::size_t i) {
+    auto picture = whole(i);
+    for (std::size_t p = 0; p < picture->pixels.size(); ++p)
+      if (p >= picture->pixels.size() / 2 || i % 2 == 0)  // below the horizon, and all of every other picture
+        picture->pixels[p].setConstant(std::numeric_limits<float>::quiet_NaN());
+    return picture;
+  };
+  const auto build = build_field(take, options_);
+  ASSERT_TRUE(build);
+  // The horizon's cells, a row of 300 of the sphere, are seen by halves.
+  EXPECT_NEAR(build->coverage, 0.5, 0.06);
+  EXPECT_NEAR(build->directions, 150, 18);
 }
 
 TEST_F(FieldBuilder, DarknessIsAFieldOfNoLight) {
