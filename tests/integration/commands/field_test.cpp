@@ -149,6 +149,29 @@ TEST_F(FieldCommandTest, RefusesAnOutputThatCannotBeWrittenOrIsAnInput) {
   EXPECT_EQ(lines(build({"--out", path("absent/f.vdb")}, "gone.csv").err), 1);
 }
 
+// What is said of the lens, the poses and the calibration comes before they are read: here they are only files.
+TEST_F(FieldCommandTest, RefusesAnOutputThatIsTheLensThePosesOrTheCalibration) {
+  const auto expect_kept = [&](const std::string& name, const std::vector<std::string>& more,
+                               const std::string& probes) {
+    SCOPED_TRACE(name);
+    std::ofstream(path(name)) << "kept";
+    auto arguments = more;
+    arguments.insert(arguments.end(), {"--out", path(name)});
+    const auto result = build(arguments, probes);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr(path(name) + ", which is not overwritten"));
+    EXPECT_EQ(lines(result.err), 1) << result.err;
+    EXPECT_EQ(read_text_file(path(name)).value(), "kept");
+  };
+  expect_kept("lens.json", {"--projection", "fisheye", "--lens", path("lens.json")}, "probes.csv");
+  std::ofstream(path("walk.mkv")) << "\x1A\x45\xDF\xA3";  // how Matroska begins
+  expect_kept("walk.poses.csv", {}, "walk.mkv");
+  expect_kept("other.csv", {"--poses", path("other.csv")}, "walk.mkv");
+  std::filesystem::create_directory(path("calibration"));
+  for (const std::string name : {"response.json", "lens.json", "flat.json"})
+    expect_kept("calibration/" + name, {"--calibration", path("calibration")}, "walk.mkv");
+}
+
 TEST_F(FieldCommandTest, SaysWhereStandardOutputIsFullOrAskedForTwice) {
   const std::string program = LIGHTWELL_BIN_DIR "/lightwell";
   ASSERT_EQ(build({"--out", path("f.vdb")}).exit_code, 0);
@@ -216,6 +239,21 @@ TEST_F(FieldCommandTest, SaysWhatOneProbeDoesNotDetermine) {
   const auto built = build({"--out", path("f.vdb")}, "one.csv");
   EXPECT_EQ(built.exit_code, 0) << built.err;
   EXPECT_THAT(built.err, HasSubstr("in one place: how light changes from place to place is not determined"));
+}
+
+// Pictures of an upper half, as of a probe that stands: what the projection could show was not seen.
+TEST_F(FieldCommandTest, CountsWhatIsInThePictures) {
+  for (int i = 0; i < 60; ++i) {
+    const std::string name = path("p" + std::to_string(i) + ".exr");
+    LatLongImage image = read_environment(name)->image;
+    for (std::size_t p = image.pixels.size() / 2; p < image.pixels.size(); ++p)
+      image.pixels[p].setConstant(std::numeric_limits<float>::quiet_NaN());
+    ASSERT_TRUE(write_environment(name, image));
+  }
+  const auto report = nlohmann::json::parse(build({"--out", path("f.vdb"), "--json"}).out);
+  // Cells that the horizon crosses, a ring of some 43 of 600, count whole or not at all.
+  EXPECT_NEAR(report["coverage"], 0.5, 0.04);
+  EXPECT_NEAR(report["directions"], 300, 24);
 }
 
 TEST_F(FieldCommandTest, OfOnePlaceNothingIsForetold) {
