@@ -43,20 +43,31 @@ Result<LatLongImage> read_picture(Bench& bench, const std::string& file) {
   return picture;
 }
 
+Status check_saturation(const Rig& rig, double saturated, const std::string& file) {
+  if (saturated <= rig.most_saturated) return {};
+  char what[160];
+  std::snprintf(what, sizeof what, ": %.3g of its pixels are saturated, allowed: most_saturated, %g",
+                saturated, rig.most_saturated);
+  return bad(file + what);
+}
+
 Status read_dark(Bench& bench) {
   if (bench.rig.dark.empty()) return {};
   const std::string file = (bench.folder / bench.rig.dark).string();
   const auto picture = read_picture(bench, bench.rig.dark);
   if (!picture) return picture.error();
+  std::size_t saturated = 0;
   for (int y = 0; y < picture->height; ++y)
     for (int x = 0; x < picture->width; ++x) {
-      const Rgbd lux = bench.camera.develop(*picture, x, y, bench.rig.dark_exposure_us).lux;
+      const auto [lux, clipped] = bench.camera.develop(*picture, x, y, bench.rig.dark_exposure_us);
       if (!lux.isFinite().all())
         return bad(file + ": pixel " + std::to_string(x) + "," + std::to_string(y) +
                    " is no number, allowed: finite values");
       bench.dark.push_back(lux);
+      if (clipped) ++saturated;
     }
-  return {};
+  return check_saturation(bench.rig, static_cast<double>(saturated) / static_cast<double>(bench.dark.size()),
+                          file);
 }
 
 struct Resampled {
@@ -128,14 +139,6 @@ Result<Resampled> add_picture(Bench& bench, const Rig::Picture& listed, double s
       *image++ += (scale * mean).cast<float>();
     }
   return out;
-}
-
-Status check_saturation(const Rig& rig, double saturated, const std::string& file) {
-  if (saturated <= rig.most_saturated) return {};
-  char what[160];
-  std::snprintf(what, sizeof what, ": %.3g of its pixels are saturated, allowed: most_saturated, %g",
-                saturated, rig.most_saturated);
-  return bad(file + what);
 }
 
 // Against the light of the brightest picture: in a dark one all is noise. Of the whole filter at once light is negative.

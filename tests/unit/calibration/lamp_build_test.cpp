@@ -223,6 +223,14 @@ TEST(LampBuild, BadPicturesAreRefused) {
         c["dark.exr"].at(0, 0)[0] = INFINITY;
       },
       "dark.exr: pixel 0,0 is no number");
+  expect_refused(
+      [](SimulatedRig& r, Changed& c) {
+        r.rig.dark = "dark.exr";
+        r.rig.saturation = 1e9;
+        c["dark.exr"] = r.picture("dark.exr");
+        c["dark.exr"].at(0, 0)[0] = 2e9F;
+      },
+      "dark.exr: 0.0025 of its pixels are saturated");
 }
 
 TEST(LampBuild, MarksThatDoNotFixTheScreenAreRefused) {
