@@ -13,7 +13,7 @@ namespace lightwell::bench {
 namespace {
 
 LightField box_field(int side) {
-  const DirectionBins bins(LatLongProbe{}, 256, 128, direction_count_for(side), 4);
+  const DirectionBins bins(LatLongProbe{}, 256, 128, direction_count_for(unit_cube(side)), 4);
   return test::build_field(test::box_of_lamps, unit_cube(side), test::random_positions(1000, 1), bins, 4,
                            FieldMethod::best)
       .field;

@@ -148,7 +148,7 @@ std::vector<Row> stage_rows() {
     const FieldGrid grid{{side, side, side},
                          Vec3d(-simulator::kWalkHalf_m, 0, -simulator::kWalkHalf_m),
                          Vec3d(simulator::kWalkHalf_m, kTop_m, simulator::kWalkHalf_m)};
-    const SeenStage stage(places, direction_count_for(side), threads);
+    const SeenStage stage(places, direction_count_for(grid), threads);
     for (const FieldMethod method : {FieldMethod::low, FieldMethod::best}) {
       Row row;
       row.setting = "stage walk, ground, " + std::to_string(places.size()) + " probes, " +

@@ -45,7 +45,7 @@ double edge_width_cells(const LightField& field) {
 std::vector<Row> error_rows_of_fields() {
   const FieldGrid grid = unit_cube(16);
   const auto positions = test::random_positions(1000, 1);
-  const DirectionBins bins(LatLongProbe{}, 256, 128, direction_count_for(16), 4);
+  const DirectionBins bins(LatLongProbe{}, 256, 128, direction_count_for(grid), 4);
   const std::vector<std::pair<std::string, test::AnalyticField>> truths = {
       {"linear", test::linear_field}, {"box of two lamps", test::box_of_lamps}, {"beam", test::beam_edge}};
   std::vector<Row> rows;

@@ -38,8 +38,6 @@
 namespace lightwell::cli {
 namespace {
 
-constexpr int kMostDirections = 1 << 20;
-
 struct BuildArguments {
   std::string probes, grid, bounds, out;
   std::string method = "best";
@@ -62,15 +60,17 @@ std::optional<double> available_memory_bytes() {
 }
 
 // The sums twice, or the sums, OpenVDB's copy of them, what it was before points are left out, and the bytes of the file;
-// of other ranks on this machine the sums.
-Status check_memory(const BuildArguments& o, const FieldGrid& grid, int ranks) {
-  const double needed = FieldSums::bytes_needed(grid, o.degree) * (3.5 + ranks - 1);
+// of other ranks on this machine the sums. Each rank cuts the sphere.
+Status check_memory(const BuildArguments& o, const FieldBuildOptions& options, int ranks) {
+  const double needed = FieldSums::bytes_needed(options.grid, o.degree) * (3.5 + ranks - 1) +
+                        DirectionBins::bytes_needed(options.directions, o.degree) * ranks;
   const auto available = available_memory_bytes();
   if (!available || needed <= *available) return {};
   char text[200];
-  std::snprintf(text, sizeof text,
-                "--grid %s at degree %d needs %.1f GB of memory, allowed: up to %.1f GB, what is free",
-                o.grid.c_str(), o.degree, needed / 1e9, *available / 1e9);
+  std::snprintf(
+      text, sizeof text,
+      "--grid %s at degree %d in %d directions needs %.1f GB of memory, allowed: up to %.1f GB, what is free",
+      o.grid.c_str(), o.degree, options.directions, needed / 1e9, *available / 1e9);
   return usage(text);
 }
 
@@ -174,9 +174,7 @@ Status prepare_walk(const BuildArguments& o, bool speaks, Prepared& prepared) {
   if (const Status none = check_no_picture_options(o.pictures); !none) return none;
   if (const Status other = check_output_is_no_walk(o.out, o.probes, o.walk); !other) return other;
   const FieldBuildOptions& options = prepared.options;
-  const int cells =
-      options.directions > 0 ? options.directions : direction_count_for(options.grid.longest_side());
-  auto walk = open_walk(o.probes, o.walk, options.grid, cells, speaks);
+  auto walk = open_walk(o.probes, o.walk, options.grid, options.directions, speaks);
   if (!walk) return walk.error();
   prepared.walk = *std::move(walk);
   prepared.options.projection = prepared.walk->projection();
@@ -196,12 +194,12 @@ Result<Prepared> prepare(const BuildArguments& o, FieldRanks& ranks) {
     return usage("--method is " + o.method + ", allowed: best, low");
   options.method = o.method == "best" ? FieldMethod::best : FieldMethod::low;
   if (o.directions == 1)
-    return usage("--directions is 1, allowed: 0, or 2 to " + std::to_string(kMostDirections));
+    return usage("--directions is 1, allowed: 0, or 2 to " + std::to_string(kMostFieldDirections));
   options.degree = o.degree;
-  options.directions = o.directions;
+  options.directions = o.directions > 0 ? o.directions : direction_count_for(*grid);
   options.threads =
       o.threads > 0 ? static_cast<unsigned>(o.threads) : default_threads(ranks.on_this_machine());
-  if (const Status enough = check_memory(o, *grid, ranks.on_this_machine()); !enough) return enough.error();
+  if (const Status enough = check_memory(o, options, ranks.on_this_machine()); !enough) return enough.error();
   if (const Status other = check_output_is_no_input(o.out, {o.probes}); !other) return other.error();
   const bool speaks = ranks.rank() == 0;
   if (o.json && is_standard_output(o.out))
@@ -308,7 +306,7 @@ Command add_field_build(CLI::App& field) {
   command
       ->add_option("--directions", o->directions,
                    "Into how many directions to cut the sphere, 2 or more; 0: as many as the grid needs")
-      ->check(whole_numbers(0, kMostDirections))
+      ->check(whole_numbers(0, kMostFieldDirections))
       ->capture_default_str();
   command
       ->add_option(

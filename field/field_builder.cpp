@@ -361,8 +361,7 @@ Status check_same_take(const ProbeTake& take, const LatLongImage& first, const F
 Result<DirectionBins> bins_of(const ProbeTake& take, const FieldBuildOptions& options,
                               const LatLongImage& first) {
   if (const Status fits = check_picture(first, options.projection, take.name(0)); !fits) return fits.error();
-  const int cells =
-      options.directions > 0 ? options.directions : direction_count_for(options.grid.longest_side());
+  const int cells = options.directions > 0 ? options.directions : direction_count_for(options.grid);
   DirectionBins bins(options.projection, first.width, first.height, cells, options.degree);
   if (bins.directions().empty())
     return Error{ErrorKind::bad_input, take.name(0) + ": the projection sees no direction in its pixels"};

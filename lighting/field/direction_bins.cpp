@@ -132,6 +132,11 @@ DirectionBins::DirectionBins(const ProbeProjection& projection, int width, int h
     fill_blind_cone(*ball, partition.cell_width_rad() / kPiecesACell, degree);
 }
 
+// Pieces, their copy for sorting and room to grow were measured at 970 bytes a cell; harmonics are there twice.
+double DirectionBins::bytes_needed(int cells, int degree) {
+  return cells * (1000.0 + 2 * sizeof(double) * harmonic_count(degree));
+}
+
 double DirectionBins::coverage() const {
   double seen = 0;
   for (const MeasuredDirection& direction : directions_) seen += direction.solid_angle_sr;

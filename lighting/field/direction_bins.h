@@ -27,6 +27,8 @@ class DirectionBins {
  public:
   // width, height: of the pictures; cells: of the partition; degree: of harmonics().
   DirectionBins(const ProbeProjection& projection, int width, int height, int cells, int degree);
+  // Memory while they are made, the most, of pictures that are no finer than the cells.
+  [[nodiscard]] static double bytes_needed(int cells, int degree);
 
   // The cells that are seen, in the partition's order.
   [[nodiscard]] std::span<const MeasuredDirection> directions() const { return directions_; }

@@ -62,8 +62,14 @@ Vec3d SpherePartition::centre(int cell) const {
   return {horizontal * std::sin(lambda), y, horizontal * std::cos(lambda)};
 }
 
-int direction_count_for(int longest_side) {
-  return std::max(kFewestDirections, static_cast<int>(std::lround(kPi * longest_side * longest_side)));
+int direction_count_for(const FieldGrid& grid) {
+  constexpr double kCorridor = 4;
+  Vec3d side = grid.high - grid.low;
+  std::sort(side.begin(), side.end());
+  const double path_cells = std::min(side[2], kCorridor * side[1]) / grid.cell().minCoeff();
+  const double points = std::min<double>(grid.longest_side(), 1 + path_cells);
+  return static_cast<int>(
+      std::lround(std::clamp<double>(kPi * points * points, kFewestDirections, kMostFieldDirections)));
 }
 
 }  // namespace lightwell

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "lighting/field/field_grid.h"
 #include "lighting/vector.h"
 
 namespace lightwell {
@@ -28,8 +29,11 @@ class SpherePartition {
   std::vector<int> first_;  // [collars + 1]: a collar's first cell; caps are collars of one cell
 };
 
-// Cells for a field whose longest side has this many points: neighbouring rays drift by about two grid cells over the
-// whole grid, and never so few that they would tell in degree 8.
-int direction_count_for(int longest_side);
+inline constexpr int kMostFieldDirections = 1 << 20;
+
+// Cells for a field: neighbouring rays drift by about two grid cells over the whole grid, or, where it is a corridor, over
+// four times its second longest side, for few rays run farther in it. Never so few that they would tell in degree 8, nor
+// more than kMostFieldDirections.
+int direction_count_for(const FieldGrid& grid);
 
 }  // namespace lightwell

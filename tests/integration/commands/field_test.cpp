@@ -126,6 +126,20 @@ TEST_F(FieldCommandTest, BadInputIsOneLineAndLeavesNothing) {
   expect_refused(flat, 2, "--bounds is 0,0,0,1,0,1, allowed: X0 < X1");
 }
 
+TEST_F(FieldCommandTest, RefusesWhatIsLargerThanMemoryWithTheNumber) {
+  std::ifstream file("/proc/meminfo");
+  std::string word;
+  double free_kib = 0;
+  while (file >> word)
+    if (word == "MemAvailable:") file >> free_kib;
+  if (free_kib * 1024 > 460e9) GTEST_SKIP() << "this machine has the memory";
+  const auto refused = lightwell({"field", "build", path("probes.csv"), "--grid", "512,512,512", "--bounds",
+                                  "0,0,0,1,1,1", "--degree", "8", "--out", path("f.vdb")});
+  // 3.5 times 512³ points of 3 · 81 + 1 floats, 458.5 GB, and 823,550 directions of 2296 bytes.
+  expect_refused(refused, 2,
+                 "--grid 512,512,512 at degree 8 in 823550 directions needs 460.4 GB of memory, allowed: ");
+}
+
 // Before any work: what is refused here would cost hours else, or the pictures.
 TEST_F(FieldCommandTest, RefusesAnOutputThatCannotBeWrittenOrIsAnInput) {
   const auto bytes = [&](const std::string& name) { return read_text_file(path(name)).value(); };

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -43,6 +44,21 @@ TEST(SpherePartition, CellsAreSmallAllAround) {
     // Leopardi proves a diameter below 7 / √cells, and finds 6.5; a corner is half of it off the centre.
     EXPECT_LT(std::acos(std::min(1.0, d.dot(sphere.centre(sphere.cell_of(d))))), 3.5 / std::sqrt(3072.0));
   }
+}
+
+TEST(DirectionCount, GrowsWithTheLongestWayOfRaysThroughAGrid) {
+  const auto count = [](std::array<int, 3> size, const Vec3d& high) {
+    return direction_count_for(FieldGrid{size, Vec3d::Zero(), high});
+  };
+  const auto of_points = [](double n) { return static_cast<int>(std::lround(kPi * n * n)); };
+  EXPECT_EQ(count({2, 2, 2}, {1, 1, 1}), 3072);
+  EXPECT_EQ(count({64, 64, 64}, {1, 1, 1}), of_points(64));
+  EXPECT_EQ(count({101, 26, 101}, {2, 0.5, 2}), of_points(101)) << "a stage: light comes from its sides, too";
+  EXPECT_EQ(count({101, 26, 26}, {2, 0.5, 0.5}), of_points(101)) << "four times as long as wide";
+  EXPECT_EQ(count({401, 26, 26}, {8, 0.5, 0.5}), of_points(101)) << "a corridor of the same width";
+  EXPECT_EQ(count({1000, 2, 2}, {999, 1, 1}), 3072) << "a row of points";
+  EXPECT_EQ(count({512, 2, 2}, {1, 1, 1}), of_points(512)) << "thin cells, across which rays go a long way";
+  EXPECT_EQ(count({4096, 4096, 2}, {1, 1, 0.001}), kMostFieldDirections);
 }
 
 }  // namespace
