@@ -23,6 +23,7 @@ namespace {
 struct ImportArguments {
   std::string file, out;
   RayBinning rays;
+  double tilt_deg = 0;
   bool json = false;
 };
 
@@ -66,6 +67,18 @@ Result<Imported> import_photometry(const ImportArguments& o) {
   out.lamp = {file->name, std::nullopt, std::move(file->lamp)};
   out.stated_flux_lm = file->stated_flux_lm.value_or(0);
   out.remarks = std::move(file->remarks);
+  if (!file->tilt_deg.empty()) {
+    const double factor = tilt_factor(*file, o.tilt_deg);
+    for (double& value : out.lamp.far->candela) value *= factor;
+    out.stated_flux_lm *= factor;
+    char text[120];
+    std::snprintf(text, sizeof text, "has TILT factors: its light is %.6g of the table's, for --tilt %g",
+                  factor, o.tilt_deg);
+    out.remarks.emplace_back(text);
+  } else if (o.tilt_deg != 0) {
+    return usage("--tilt is " + std::to_string(o.tilt_deg) + ", but " + o.file +
+                 " has no TILT factors: allowed 0");
+  }
   return out;
 }
 
@@ -116,6 +129,12 @@ Command add_luminaire_import(CLI::App& luminaire) {
       ->capture_default_str();
   command->add_option("--pixels", o->rays.pixels, "Of a ray file: pixels a side of each source's image")
       ->check(whole_numbers(8, 1024))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--tilt", o->tilt_deg,
+          "Of an .ies with TILT factors: degrees by which it hangs turned from where it was measured")
+      ->check(numbers_from(0, 180, "0 to 180 degrees"))
       ->capture_default_str();
   command->add_option("--out", o->out, "The lamp, EXR")->required()->check(output_file())->type_name("FILE");
   command->add_flag("--json", o->json, "Machine-readable result on stdout");

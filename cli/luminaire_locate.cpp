@@ -19,6 +19,7 @@
 #include "interface/option_range.h"
 #include "interface/printable.h"
 #include "interface/same_file.h"
+#include "interface/writable_output.h"
 #include "lighting/field/located_lamps.h"
 #include "lighting/luminaire/located_luminaire.h"
 
@@ -121,25 +122,63 @@ void say_what_is_missing(const Stage& stage) {
                stage.list.positions.size());
 }
 
-Status write_rest(const LocateArguments& o, const Stage& stage) {
-  std::error_code failed;
-  std::filesystem::create_directories(o.rest, failed);
-  if (failed) return Error{ErrorKind::failed, o.rest + ": " + failed.message()};
-  for (std::size_t n = 0; n < stage.views.size(); ++n) {
+// Every file that will be written, before the first is.
+struct Outputs {
+  std::vector<std::filesystem::path> lamps;  // of the lamps that have a place; empty: not asked for
+  std::vector<std::filesystem::path> rest;   // [probes]; empty: not asked for
+};
+
+Outputs outputs_of(const LocateArguments& o, const Stage& stage) {
+  Outputs out;
+  if (!o.lamps.empty()) {
+    const auto name = FrameName::parse(o.lamps);
+    int id = 0;
+    for (const LocatedLamp& lamp : stage.lamps)
+      if (lamp.location.is_near()) out.lamps.push_back(name->file(++id));
+  }
+  if (!o.rest.empty())
+    for (std::size_t n = 0; n < stage.views.size(); ++n)
+      out.rest.push_back(std::filesystem::path(o.rest) /
+                         ("rest_" + std::to_string(n) +
+                          (std::holds_alternative<LightSet>(stage.views[n].content) ? ".json" : ".exr")));
+  return out;
+}
+
+// None is an input or another output, all can be written.
+Status check_outputs(const LocateArguments& o, const Stage& stage, const Outputs& out) {
+  std::vector<std::filesystem::path> all = out.lamps;
+  all.insert(all.end(), out.rest.begin(), out.rest.end());
+  if (!o.out.empty()) all.emplace_back(o.out);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (const Status list = check_output_is_no_input(all[i], {o.probes}); !list) return list;
+    for (const auto& input : stage.list.files)
+      if (const Status other = check_output_is_no_input(all[i], {input}); !other) return other;
+    for (std::size_t k = 0; k < i; ++k)
+      if (is_one_output(all[k], all[i]))
+        return Error{ErrorKind::usage, all[i].string() + " is written twice, allowed: another name for each"};
+  }
+  if (!out.rest.empty()) {
+    std::error_code failed;
+    std::filesystem::create_directories(o.rest, failed);
+    if (failed) return Error{ErrorKind::failed, o.rest + ": " + failed.message()};
+  }
+  for (const std::filesystem::path& file : all)
+    if (const Status can = check_can_write(file); !can) return can;
+  return {};
+}
+
+Status write_rest(const Stage& stage, const std::vector<std::filesystem::path>& files) {
+  for (std::size_t n = 0; n < files.size(); ++n) {
     std::vector<int> removed;
     for (const LocatedLamp& lamp : stage.lamps)
       if (lamp.location.is_near() && lamp.sightings[n] >= 0) removed.push_back(lamp.sightings[n]);
-    const char* ending = std::holds_alternative<LightSet>(stage.views[n].content) ? ".json" : ".exr";
-    const auto file = std::filesystem::path(o.rest) / ("rest_" + std::to_string(n) + ending);
-    for (const auto& input : stage.list.files)
-      if (const Status other = check_output_is_no_input(file, {input}); !other) return other;
-    if (const Status written = write_without(stage.views[n], removed, file); !written) return written;
+    if (const Status written = write_without(stage.views[n], removed, files[n]); !written) return written;
   }
   return {};
 }
 
 // The located ones' report; writes their files where asked.
-Result<Json> near_lamps(const LocateArguments& o, const Stage& stage) {
+Result<Json> near_lamps(const Stage& stage, const std::vector<std::filesystem::path>& files) {
   Json json = Json::array();
   int id = 0;
   for (const LocatedLamp& lamp : stage.lamps) {
@@ -153,12 +192,10 @@ Result<Json> near_lamps(const LocateArguments& o, const Stage& stage) {
           stderr,
           "lightwell: lamp %d: %d of the probes that see it stand behind it, what they see is not in it\n",
           id, luminaire.behind);
-    if (!o.lamps.empty()) {
-      const auto name = FrameName::parse(o.lamps);
-      if (!name) return Error{ErrorKind::usage, "--lamps: " + name.error().message};
-      if (const Status written = write_luminaire(name->file(id), luminaire.lamp); !written)
-        return written.error();
-      one["file"] = name->file(id).string();
+    if (!files.empty()) {
+      const std::filesystem::path& file = files[static_cast<std::size_t>(id - 1)];
+      if (const Status written = write_luminaire(file, luminaire.lamp); !written) return written.error();
+      one["file"] = file.string();
     }
     json.push_back(std::move(one));
   }
@@ -178,17 +215,16 @@ int run(const LocateArguments& o) {
   if (const Status checked = check(o); !checked) return fail(checked.error());
   auto stage = read_stage(o);
   if (!stage) return fail(stage.error());
-  for (const auto& input : stage->list.files)
-    if (const Status other = check_output_is_no_input(o.out, {input}); !other) return fail(other.error());
   say_what_is_missing(*stage);
   stage->lamps = locate_lamps(stage->sightings, o.sigma_deg * kDegree);
-  auto near = near_lamps(o, *stage);
+  const Outputs out = outputs_of(o, *stage);
+  if (const Status checked = check_outputs(o, *stage, out); !checked) return fail(checked.error());
+  auto near = near_lamps(*stage, out.lamps);
   if (!near) return fail(near.error());
   Json far = Json::array();
   for (const LocatedLamp& lamp : stage->lamps)
     if (!lamp.location.is_near()) far.push_back(far_json(lamp));
-  if (!o.rest.empty())
-    if (const Status written = write_rest(o, *stage); !written) return fail(written.error());
+  if (const Status written = write_rest(*stage, out.rest); !written) return fail(written.error());
   Json json = {{"schema", "lightwell.lamps/1"}, {"probes", Json::array()}};
   for (std::size_t n = 0; n < stage->views.size(); ++n)
     json["probes"].push_back({{"file", printable(stage->list.files[n].string())},
@@ -203,10 +239,12 @@ int run(const LocateArguments& o) {
     std::fputs(text.c_str(), stdout);
   } else {
     for (const Json& lamp : json["lamps"])
-      std::printf("lamp %d at %.3f %.3f %.3f m, off by %.3f m or less in 68 of 100; %.4g cd, %.3f m wide\n",
-                  lamp["id"].get<int>(), lamp["position"][0].get<double>(), lamp["position"][1].get<double>(),
-                  lamp["position"][2].get<double>(), lamp["sigma_m"].get<double>(),
-                  lamp["intensity"][1].get<double>(), 2 * lamp["radius_m"].get<double>());
+      std::printf(
+          "lamp %d at %.3f %.3f %.3f m, standard deviation %.3f m along its least certain axis; %.4g cd, "
+          "%.3f m wide\n",
+          lamp["id"].get<int>(), lamp["position"][0].get<double>(), lamp["position"][1].get<double>(),
+          lamp["position"][2].get<double>(), lamp["sigma_m"].get<double>(),
+          lamp["intensity"][1].get<double>(), 2 * lamp["radius_m"].get<double>());
     std::printf("%zu lamps located, %zu lights of which only the direction is known\n", json["lamps"].size(),
                 json["directional"].size());
   }

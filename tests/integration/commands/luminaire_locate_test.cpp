@@ -158,6 +158,14 @@ TEST_F(LuminaireLocateTest, BadInputIsOneLine) {
   refused({path("bad.csv")}, 3, "none.exr");
   refused({path("probes.csv"), "--out", path("probe_1.exr")}, 2, "probe_1.exr");
   refused({path("probes.csv"), "--lamps", path("lamp.exr")}, 2, "allowed: a name with a number");
+  // Lamp 1 would replace the second probe's picture; and two outputs one another. Nothing is written.
+  const auto before = std::filesystem::last_write_time(path("probe_1.exr"));
+  refused({path("probes.csv"), "--lamps", path("probe_%d.exr")}, 2, "probe_1.exr");
+  refused({path("probes.csv"), "--lamps", path("l_%d.exr"), "--out", path("l_2.exr")}, 2,
+          "l_2.exr is written twice");
+  refused({path("probes.csv"), "--lamps", path("none/l_%d.exr"), "--out", path("lamps.json")}, 1, "none");
+  EXPECT_EQ(std::filesystem::last_write_time(path("probe_1.exr")), before);
+  EXPECT_FALSE(std::filesystem::exists(path("l_1.exr")) || std::filesystem::exists(path("lamps.json")));
   refused({path("probes.csv"), "--sigma", "0"}, 2, "above 0 to 10 degrees");
   EXPECT_FALSE(std::filesystem::exists(path("lamp.exr")));
 }

@@ -101,6 +101,23 @@ TEST_F(LuminaireCommandTest, AMakersTableGoesOutAsItCameIn) {
   expect_refused(lightwell({"luminaire", "export", path("odd.ies"), "--out", path("x.ies")}), 3, "is no EXR");
 }
 
+TEST_F(LuminaireCommandTest, TiltFactorsCountForTheAngleThatIsTold) {
+  std::ofstream(path("tilt.ies")) << "IESNA:LM-63-2002\nTILT=INCLUDE\n1\n3\n0 45 90\n0.9 0.8 0.6\n1 -1 1 2 1 "
+                                     "1 2 0 0 0\n1 1 10\n0 90\n0\n100 100\n";
+  const auto flux = [&](std::vector<std::string> more, const std::string& said) {
+    more.insert(more.begin(), {"luminaire", "import", path("tilt.ies"), "--out", path("lamp.exr"), "--json"});
+    const auto imported = lightwell(more);
+    EXPECT_EQ(imported.exit_code, 0) << imported.err;
+    EXPECT_THAT(imported.err, HasSubstr(said));
+    return nlohmann::json::parse(imported.out)["flux_lm"].get<double>() / (200 * M_PI);
+  };
+  EXPECT_NEAR(flux({}, "is 0.9 of the table's, for --tilt 0"), 0.9, 1e-9);
+  EXPECT_NEAR(flux({"--tilt", "67.5"}, "is 0.7 of the table's"), 0.7, 1e-9);
+  expect_refused(
+      lightwell({"luminaire", "import", path("even.ies"), "--tilt", "10", "--out", path("lamp.exr")}), 2,
+      "has no TILT factors");
+}
+
 TEST_F(LuminaireCommandTest, BadInputIsOneLineAndLeavesNothing) {
   std::ofstream(path("cut.ies")) << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2\n";
   expect_refused(import("cut.ies"), 3, "the file is cut short");
