@@ -77,7 +77,7 @@ Command add_bench(CLI::App& app) {
   command->add_option(
       "--only", asked->options.only_setting,
       "Of the coherence suite, sequences whose name contains this; of the render suite, scenes, or "
-      "growth, gloss, steadiness, field light");
+      "growth, gloss, steadiness, field light, lamp");
   command->add_option("--followers", asked->options.only_name,
                       "Of the coherence suite, followers whose name contains this");
   command->add_option("--lights", asked->options.lights, "Of the coherence suite, lights of a set")

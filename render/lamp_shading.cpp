@@ -178,16 +178,16 @@ Status LampShading::draw_maps(Drawn& drawn, Part& part, const AllCasters& all) {
   const double radius = static_cast<double>(all.coarse.objects.radius);
   const double away =
       (drawn.lamp.world_from_lamp.translation() - all.coarse.objects.centre.cast<double>()).norm();
-  const bool has_fine = !all.fine.parts.empty();
   const bool fine =
-      has_fine && (away < 3 * radius || LampMaps::side_of(options_.shadow_size, part.sources.sources.size()) >
-                                            options_.shadow_size);
+      all.fine != nullptr &&
+      (away < 3 * radius ||
+       LampMaps::side_of(options_.shadow_size, part.sources.sources.size()) > options_.shadow_size);
   const double texels = options_.shadow_size * (fine ? kLargestMap : 1);
   const float off_m = options_.simplify_casters
                           ? static_cast<float>(static_cast<double>(kSimplifiedTexels) * 2 * radius / texels)
                           : 0;
   if (Status s = part.maps.draw(map_program_, part.sources, drawn.lamp.world_from_lamp,
-                                {fine ? all.fine : all.coarse,
+                                {fine ? *all.fine : all.coarse,
                                  fine ? all.buffers.fine() : all.buffers.coarse(), all.cutouts, off_m},
                                 options_.shadow_size);
       !s)

@@ -37,7 +37,7 @@ class LampShading {
   // What casts, by how fine it is to be: for maps up to shadow_size, and for larger ones and lamps nearby.
   struct AllCasters {
     const Casters& coarse;
-    const Casters& fine;
+    const Casters* fine;  // nullptr: there are none
     const ShadowAtlas& buffers;
     const CutoutCasters& cutouts;
   };

@@ -303,7 +303,7 @@ Status Renderer::draw_lamp_maps() {
   if (!shadows_ || nothing_casts_) return {};
   const double start = now_ms();
   const bool has_fine = ShadowAtlas::has_large_maps({options_.shadow_size, options_.texels_by_power});
-  if (Status s = lamps_.draw_maps({casters_, has_fine ? fine_casters_ : casters_, atlas_, cutouts_}); !s)
+  if (Status s = lamps_.draw_maps({casters_, has_fine ? &fine_casters_ : nullptr, atlas_, cutouts_}); !s)
     return s;
   const LampShading::Counts counts = lamps_.counts();
   shadow_maps_ += counts.maps;

@@ -83,6 +83,20 @@ FarField uneven_far_field() {
   return far;
 }
 
+TEST_F(LampPictures, SmallMapsShowShadowsToo) {
+  // Below 64 texels there are no finer meshes for large maps.
+  const Scene scene = stage();
+  const std::vector<PlacedLamp> lamps = {
+      {shared({"", {}, uneven_far_field()}), aimed_down({0.6, 1.2, 0.4}), 1}};
+  const auto reference = lamp_picture_by_force(scene, lamps, stage_camera(), kWidth, kHeight);
+  auto renderer = renderer_of(scene, 0, 32);
+  const auto with_shadows = difference(picture_of(renderer, lamps, stage_camera()), reference);
+  EXPECT_EQ(renderer.lamps().counts().map_side, 128);
+  ASSERT_TRUE(renderer.set_shadows(false).ok());
+  const auto without = difference(picture_of(renderer, lamps, stage_camera()), reference);
+  EXPECT_LE(with_shadows.relative_rmse, without.relative_rmse / 4);  // edges of 128 texels are left
+}
+
 TEST_F(LampPictures, FarFieldAmidTheObjectsLightsAllAroundIt) {
   Scene scene = stage();
   add_box(scene, {-1.5f, 0, -1.5f}, {1.5f, 1.2f, -1.4f}, lambertian(Rgb::Constant(0.5f)));
