@@ -92,6 +92,7 @@ Json far_json(const LocatedLamp& lamp) {
           {"illuminance", numbers(lamp.illuminance)},
           {"angular_radius_deg", lamp.angular_radius_rad / kDegree},
           {"distance_m", {{"probe", lamp.from}, {"near", near_m}, {"far", bound(far_m)}}},
+          {"ambiguous", lamp.ambiguous},
           {"seen_by", seen_by(lamp)}};
 }
 
@@ -118,8 +119,21 @@ void say_what_is_missing(const Stage& stage) {
   for (const Vec3d& position : stage.list.positions)
     base_m = std::max(base_m, (position - stage.list.positions.front()).norm());
   if (base_m > 0) return;
-  std::fprintf(stderr, "lightwell: all %zu probes stand in one place: of no lamp the distance can be told\n",
+  std::fprintf(stderr,
+               "lightwell: all probes (%zu) stand in one place: of no lamp the distance can be told\n",
                stage.list.positions.size());
+}
+
+// Lights whose rays cross in more than one way.
+void say_what_is_ambiguous(const Stage& stage) {
+  const auto count =
+      std::count_if(stage.lamps.begin(), stage.lamps.end(), [](const LocatedLamp& l) { return l.ambiguous; });
+  if (count > 0)
+    std::fprintf(stderr,
+                 "lightwell: %td sightings cross in more than one way that explains all: only their "
+                 "directions are given, "
+                 "a further probe out of line would tell\n",
+                 count);
 }
 
 // Every file that will be written, before the first is.
@@ -217,6 +231,7 @@ int run(const LocateArguments& o) {
   if (!stage) return fail(stage.error());
   say_what_is_missing(*stage);
   stage->lamps = locate_lamps(stage->sightings, o.sigma_deg * kDegree);
+  say_what_is_ambiguous(*stage);
   const Outputs out = outputs_of(o, *stage);
   if (const Status checked = check_outputs(o, *stage, out); !checked) return fail(checked.error());
   auto near = near_lamps(*stage, out.lamps);

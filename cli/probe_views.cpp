@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "interface/environment_io.h"
 #include "interface/light_set_io.h"
@@ -14,7 +15,9 @@ namespace lightwell::cli {
 namespace {
 
 constexpr int kMostSectors = 720;  // half a degree: finer pictures tell no more of a lamp's middle
-constexpr int kCells = 384;        // what the finder's shares are of, which are not asked for here
+constexpr int kRounds = 6;         // each finds eight
+constexpr std::size_t kMostLamps = 32;
+constexpr int kCells = 384;  // what the finder's shares are of, which are not asked for here
 
 // To the lowest row with light: below it a camera that looks up saw nothing.
 double theta_max_of(const LatLongImage& image) {
@@ -30,6 +33,25 @@ void find_lamps(const LatLongImage& image, std::vector<LampSighting>& lamps) {
     map = resample_polar(map, {kMostSectors / 2, kMostSectors, map.grid.theta_max_rad});
   const PolarCells cells(map.grid, SpherePartition(kCells));
   LampFinder(cells).find(map, lamps);
+}
+
+LatLongImage without(LatLongImage image, const std::vector<LampSighting>& lamps,
+                     const std::vector<int>& removed);
+
+// A lamp beside the sun is nothing of the picture's light, but of what is left without the sun.
+std::vector<LampSighting> lamps_of(LatLongImage image) {
+  std::vector<LampSighting> lamps;
+  for (int round = 0; round < kRounds && lamps.size() < kMostLamps; ++round) {
+    std::vector<LampSighting> found;
+    find_lamps(image, found);
+    if (found.empty()) break;
+    std::vector<int> all(found.size());
+    std::iota(all.begin(), all.end(), 0);
+    image = without(std::move(image), found, all);
+    for (LampSighting& lamp : found)
+      if (lamps.size() < kMostLamps) lamps.push_back(std::move(lamp));
+  }
+  return lamps;
 }
 
 LatLongImage without(LatLongImage image, const std::vector<LampSighting>& lamps,
@@ -83,7 +105,7 @@ Result<ProbeView> read_probe_view(const std::filesystem::path& file) {
   if (!read) return read.error();
   view.remark = read->remark(file);
   view.theta_max_rad = theta_max_of(read->image);
-  find_lamps(read->image, view.lamps);
+  view.lamps = lamps_of(read->image);
   view.content = std::move(read->image);
   return view;
 }

@@ -12,28 +12,20 @@ namespace lightwell {
 namespace {
 
 constexpr double kDegree = kPi / 180;
-constexpr double kGate = 3 * kDegree;      // between a lamp and its ray
-constexpr double kMargin = 3 * kDegree;    // from the edge of what a probe sees, where a lamp is cut
-constexpr double kSmoothing_s = 0.1;       // of the position
-constexpr double kLeastDistance_m = 0.05;  // nearer, a probe has the lamp on it: no direction
-constexpr double kPairFactor = 2;          // of intensity between two probes who alone see a lamp
-constexpr std::size_t kTriedAProbe = 4;    // rays of a probe in the search for new lamps
+constexpr double kGate = 3 * kDegree;    // between a lamp and its ray
+constexpr double kMargin = 3 * kDegree;  // from the edge of what a probe sees, where a lamp is cut
+constexpr double kSmoothing_s = 0.1;     // of the position
+constexpr double kPairFactor = 2;        // of intensity between two probes who alone see a lamp
+constexpr std::size_t kTriedAProbe = 4;  // rays of a probe in the search for new lamps
 
 // cos of the angle between a probe's ray and a place.
 double agreement(const Vec3d& place, const Vec3d& position, const Vec3d& direction) {
   return (place - position).normalized().dot(direction);
 }
 
-bool looks_at(const ProbeSightings& probe, const Vec3d& place) {
-  const Vec3d toward = place - probe.position;
-  const double distance = toward.norm();
-  return probe.present && distance > kLeastDistance_m &&
-         toward.y() > distance * std::cos(std::max(0.0, probe.theta_max_rad - kMargin));
-}
-
 // The sighting nearest to where a lamp should be, within an angle.
 int nearest(const ProbeSightings& probe, const Vec3d& place, double gate_rad) {
-  if (!probe.present || (place - probe.position).norm() <= kLeastDistance_m) return -1;
+  if (!probe.present || (place - probe.position).norm() <= kLeastLampDistance_m) return -1;
   int best = -1;
   double most = std::cos(gate_rad);
   for (std::size_t i = 0; i < probe.lamps.size(); ++i)
@@ -62,11 +54,18 @@ double relative_sigma(const LampPlace& place, std::span<const SightRay> rays) {
 
 }  // namespace
 
+bool looks_at(const ProbeSightings& probe, const Vec3d& place) {
+  const Vec3d toward = place - probe.position;
+  const double distance = toward.norm();
+  return probe.present && distance > kLeastLampDistance_m &&
+         toward.y() > distance * std::cos(std::max(0.0, probe.theta_max_rad - kMargin));
+}
+
 // Looks for a known lamp's rays.
 void LampTracks::link(LampTrack& track, std::span<const ProbeSightings> probes) {
   track.links.resize(probes.size());
   for (std::size_t n = 0; n < probes.size(); ++n) {
-    const double distance = std::max((track.position - probes[n].position).norm(), kLeastDistance_m);
+    const double distance = std::max((track.position - probes[n].position).norm(), kLeastLampDistance_m);
     track.links[n].sighting = nearest(probes[n], track.position, kGate + track.sigma_m / distance);
   }
 }
@@ -142,7 +141,7 @@ std::optional<LampTrack> LampTracks::best_lamp(std::span<const ProbeSightings> p
   double best_score = 1;
   std::set<std::vector<int>> tried;  // by their sightings: many pairs of rays give the same lamp
   const auto try_pair = [&](const SightRay& a, const SightRay& b) {
-    const auto guess = meeting_point(a, b, 2 * kLeastDistance_m);
+    const auto guess = meeting_point(a, b, 2 * kLeastLampDistance_m);
     if (!guess || agreement(*guess, a.origin, a.direction) <= std::cos(kGate) ||
         agreement(*guess, b.origin, b.direction) <= std::cos(kGate))
       return;

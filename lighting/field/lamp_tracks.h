@@ -20,6 +20,10 @@ struct ProbeSightings {
   std::span<const LampSighting> lamps;
 };
 
+constexpr double kLeastLampDistance_m = 0.05;  // nearer, a probe has the lamp on it: no direction
+// Whether a probe would see a lamp at a place, which may be too dim or hidden.
+bool looks_at(const ProbeSightings& probe, const Vec3d& place);
+
 // A lamp whose place is known.
 struct LampTrack {
   std::uint32_t id = 0;  // stays with the lamp

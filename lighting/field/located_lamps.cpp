@@ -19,22 +19,24 @@ class Association {
     for (const ProbeSightings& probe : probes) claimed_.emplace_back(probe.lamps.size(), false);
   }
 
-  // Whose rays cross.
+  // Whose rays cross, in one way only.
   void take_crossing() {
-    LampTracks tracks;
-    tracks.update(probes_, 0);
-    for (const LampTrack& track : tracks.lamps()) {
-      LocatedLamp lamp;
-      for (const LampTrack::Link& link : track.links) lamp.sightings.push_back(link.sighting);
-      if (!locate(lamp) || !lamp.location.is_near()) continue;
-      lamp.intensity = track.intensity;
-      lamp.radius_m = track.radius_m;
-      for (const LampTrack::Link& link : track.links) {
-        lamp.intensity_toward.push_back(link.intensity);
-        lamp.known.push_back(link.known);
+    for (std::size_t n = 0; n < probes_.size(); ++n) ambiguous_.emplace_back(probes_[n].lamps.size(), false);
+    for (CrossingLamp& crossing : crossing_lamps(probes_, sigma_)) {
+      if (crossing.ambiguous) {
+        for (std::size_t n = 0; n < probes_.size(); ++n)
+          if (const int i = crossing.sightings[n]; i >= 0) ambiguous_[n][static_cast<std::size_t>(i)] = true;
+        continue;
       }
+      LocatedLamp lamp;
+      lamp.sightings = std::move(crossing.sightings);
+      locate(lamp);
       claim(std::move(lamp));
     }
+    // Shares of a sighting that two lamps claim rest on intensities, which rest on the other probes' shares.
+    for (LocatedLamp& lamp : lamps_) lamp.intensity = Rgbd::Ones();
+    for (int round = 0; round < 4; ++round)
+      for (LocatedLamp& lamp : lamps_) measure_near(lamp);
   }
 
   // Who see it where the others do, and those that are left alone.
@@ -45,13 +47,14 @@ class Association {
         LocatedLamp lamp;
         lamp.sightings.assign(probes_.size(), -1);
         lamp.sightings[n] = static_cast<int>(i);
-        for (std::size_t m = n + 1; m < probes_.size(); ++m)
+        for (std::size_t m = n + 1; m < probes_.size() && !ambiguous_[n][i]; ++m)
           lamp.sightings[m] = alike(m, probes_[n].lamps[i]);
         if (!locate(lamp) || lamp.location.chi_square > kChiSquare * lamp.location.degrees_of_freedom) {
           std::fill(lamp.sightings.begin(), lamp.sightings.end(), -1);  // no one light: this one alone
           lamp.sightings[n] = static_cast<int>(i);
           locate(lamp);
         }
+        lamp.ambiguous = ambiguous_[n][i];
         measure(lamp);
         claim(std::move(lamp));
       }
@@ -78,7 +81,8 @@ class Association {
     for (std::size_t i = 0; i < probes_[probe].lamps.size(); ++i) {
       const LampSighting& other = probes_[probe].lamps[i];
       const double ratio = luminance(other.illuminance) / std::max(luminance(lamp.illuminance), 1e-30);
-      if (claimed_[probe][i] || ratio > kSamePower || ratio * kSamePower < 1) continue;
+      if (claimed_[probe][i] || ambiguous_[probe][i] || ratio > kSamePower || ratio * kSamePower < 1)
+        continue;
       if (const double cosine = other.direction.dot(lamp.direction); cosine > most) {
         most = cosine;
         best = static_cast<int>(i);
@@ -97,6 +101,32 @@ class Association {
     const auto location = locate_lamp(rays, sigma_);
     if (location) lamp.location = *location;
     return location.has_value();
+  }
+
+  // Of a sighting each of its lamps has what its mean intensity foretells.
+  void measure_near(LocatedLamp& lamp) const {
+    const Vec3d& place = lamp.location.position;
+    lamp.intensity_toward.assign(probes_.size(), Rgbd::Zero());
+    lamp.known.assign(probes_.size(), false);
+    Rgbd sum = Rgbd::Zero();
+    double seen = 0, radius_m = 0;
+    for (std::size_t n = 0; n < probes_.size(); ++n) {
+      const int i = lamp.sightings[n];
+      lamp.known[n] = i >= 0 || looks_at(probes_[n], place);
+      if (i < 0) continue;
+      const double square = (place - probes_[n].position).squaredNorm();
+      double all = 0;
+      for (const LocatedLamp& other : lamps_)
+        if (other.sightings[n] == i)
+          all += luminance(other.intensity) / (other.location.position - probes_[n].position).squaredNorm();
+      const double share = all > 0 ? luminance(lamp.intensity) / square / all : 1;
+      lamp.intensity_toward[n] = sighting(n, i).illuminance * (share * square);
+      sum += lamp.intensity_toward[n];
+      radius_m += std::sqrt(square) * std::sin(std::min(sighting(n, i).angular_radius_rad, kPi / 2));
+      ++seen;
+    }
+    lamp.intensity = sum / seen;
+    lamp.radius_m = radius_m / seen;
   }
 
   // What probes that see it under one direction say of its light.
@@ -130,7 +160,7 @@ class Association {
 
   std::span<const ProbeSightings> probes_;
   double sigma_;
-  std::vector<std::vector<bool>> claimed_;  // [probes][sightings]
+  std::vector<std::vector<bool>> claimed_, ambiguous_;  // [probes][sightings]
   std::vector<LocatedLamp> lamps_;
 };
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "lighting/field/lamp_association.h"
 #include "lighting/field/lamp_location.h"
 #include "lighting/field/lamp_tracks.h"
 
@@ -23,11 +24,13 @@ struct LocatedLamp {
   // Where it is not:
   Rgbd illuminance = Rgbd::Zero();  // lux facing it, mean over the probes that see it
   double angular_radius_rad = 0;    // as wide as they see it
+  bool ambiguous = false;           // it crosses with others' sightings, but in more than one way
 };
 
-// Which sightings of several probes are one lamp, and where it stands: first what their crossing confirms
-// (lighting/field/lamp_tracks.h), then what is seen under nearly the same direction and as bright by all, last what one
-// probe alone sees. Brightest first among the near, among the far. Every sighting belongs to one lamp, two where lamps stand in one line.
+// Which sightings of several probes are one lamp, and where it stands: first what their crossing tells without a doubt
+// (lighting/field/lamp_association.h), then what is seen under nearly the same direction and as bright by all, last what one
+// probe alone sees. Brightest first among the near, among the far. Every sighting belongs to one lamp, to more where lamps
+// stand in one line.
 // sigma_rad: of a sighting's direction, each way.
 std::vector<LocatedLamp> locate_lamps(std::span<const ProbeSightings> probes, double sigma_rad);
 

@@ -125,7 +125,7 @@ TEST_F(LuminaireLocateTest, LightSetsOfTheSamplerTellItToo) {
 TEST_F(LuminaireLocateTest, WithoutEvidenceThereIsADirectionOnly) {
   std::ofstream(path("same.csv")) << "x,y,z,file\n1,0,0,probe_0.exr\n1,0,0,probe_0.exr\n";
   const auto same = lightwell({"luminaire", "locate", path("same.csv"), "--json"});
-  EXPECT_THAT(same.err, HasSubstr("all 2 probes stand in one place"));
+  EXPECT_THAT(same.err, HasSubstr("all probes (2) stand in one place"));
   EXPECT_EQ(json::parse(same.out)["lamps"].size(), 0u);
   EXPECT_EQ(json::parse(same.out)["directional"].size(), 3u);
   std::ofstream(path("one.csv")) << "x,y,z,file\n0,0,0,probe_0.exr\n";
