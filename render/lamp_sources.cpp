@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kStep_deg = 0.5;       // of a far field whose nodes lie on no circle of even steps
 constexpr double kLeastStep_deg = 0.1;  // finer tables are drawn at half a degree too
+constexpr int kMostNodes = 4096;        // a side, that a table may be refined to
 
 // The even step that has all these angles among its multiples, and divides `whole`; 0: there is none.
 double even_step(const std::vector<double>& deg, double whole) {
@@ -22,6 +23,12 @@ double even_step(const std::vector<double>& deg, double whole) {
   };
   if (step < kLeastStep_deg || !divides(whole) || !std::all_of(deg.begin(), deg.end(), divides)) return 0;
   return step;
+}
+
+// In how many parts a step is taken that is so much coarser than the other axis's.
+int parts_of(double step, double other, double whole) {
+  const int most = std::max(1, static_cast<int>(kMostNodes * step / whole));
+  return std::clamp(static_cast<int>(std::lround(step / other)), 1, most);
 }
 
 // Adds an image moved by so many pixels, which need not be whole: shared out to four, no light is lost.
@@ -172,6 +179,11 @@ LampSources sources_of(const FarField& lamp, const Vec3d& centre) {
   const bool cut = (lamp.vertical_deg.front() > 0 && bright_end(0)) ||
                    (lamp.vertical_deg.back() < 180 && bright_end(lamp.vertical_deg.size() - 1));
   if (cut && along > kStep_deg) along /= std::ceil(along / kStep_deg);
+  // Levels of an image are halved along both axes: steps as wide as they are high, or the coarser axis would be blurred
+  // for the finer one's sake. The table's nodes stay among them. A lamp that is the same all around needs one column.
+  const double table_across = across;
+  if (across < 360) across /= parts_of(across, along, 360);
+  if (across < 360) along /= parts_of(along, table_across, 180);
   LampSources out;
   out.map = SourceMap::sphere;
   out.width = static_cast<int>(std::lround(360 / across));

@@ -51,8 +51,8 @@ int least_group(const NearField& lamp);
 // One group of all positions.
 int largest_group(const NearField& lamp);
 
-// The far field, at the nodes of its table where their step is a whole part of a circle and a half, else at every half degree;
-// one source. centre: where it is
+// The far field, at the nodes of its table where their step is a whole part of a circle and a half, else at every half degree,
+// in steps about as wide as high: nodes between the table's are its own linear interpolation. One source. centre: where it is
 LampSources sources_of(const FarField& lamp, const Vec3d& centre);
 
 // Flux of the positions' images, lm, in the order of LampPlanes::image.

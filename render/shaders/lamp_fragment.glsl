@@ -46,7 +46,7 @@ void main() {
   uvec4 packed_surface = texelFetch(surface_map, pixel, 0);
   Surface s = unpack(position_material, packed_surface);
   vec3 at = lamp_from_world * (position_material.xyz - lamp_origin);
-  // What a pixel shows of the surface, of the light's images as they fall on it: the finest level that is no finer.
+  // What a pixel shows of the surface, of the light's images as they fall on it: the level of pixels as wide, between two.
   float seen = length(eye - position_material.xyz) * pixel_tangent *
                inversesqrt(max(abs(dot(s.normal, s.to_eye)), 0.05));
   s.normal = lamp_from_world * s.normal;

@@ -335,6 +335,26 @@ TEST_F(LampPictures, PatternFinerThanThePictureIsSeenAsItsMean) {
     }
 }
 
+TEST_F(LampPictures, TableOfFewPlanesKeepsThemWhereItsFineRowsAreFiltered) {
+  // A pixel is three rows of a degree wide, and far narrower than the 15° between planes.
+  FarField far;
+  far.horizontal_deg.clear();
+  for (int c = 0; c < 360; c += 15) far.horizontal_deg.push_back(c);
+  for (int g = 0; g <= 90; ++g) far.vertical_deg.push_back(g);
+  for (const double c : far.horizontal_deg)
+    for (const double g : far.vertical_deg)
+      far.candela.push_back(100 + 90 * std::cos(c * kPi / 45) * std::sin(g * kPi / 180));
+  Scene scene;
+  add_ground(scene, lambertian(Rgb::Constant(0.6f)), false, 3);
+  const std::vector<PlacedLamp> lamps = {{shared({"", {}, far}), aimed_down({0, 1, 0}), 1}};
+  const SceneCamera camera = camera_at({0, 8, 0.01f}, {0, 0, 0}, 0.5f);
+  const auto reference = lamp_picture_by_force(scene, lamps, camera, kWidth, kHeight);
+  auto renderer = renderer_of(scene);
+  const PictureDifference off = difference(picture_of(renderer, lamps, camera), reference);
+  EXPECT_LE(off.relative_rmse, 0.01);  // the reference is that of the pixels' middles
+  EXPECT_NEAR(off.light, 1, 0.005);
+}
+
 TEST_F(LampPictures, MorePositionsThanADriverHoldsAreDrawnTogether) {
   const Scene scene = stage();
   const NearField lamp = patterned_lamp(17, 16, 0.01, 32);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "render/lamp_detail.h"
 #include "tests/support/lamp_reference.h"
 
@@ -55,12 +57,37 @@ TEST(LampSources, FarFieldHasTheTablesNodes) {
   far.vertical_deg = {0, 45, 90, 135, 180};
   for (int i = 0; i < 20; ++i) far.candela.push_back(i);
   const LampSources sources = sources_of(far, Vec3d::Zero());
-  ASSERT_EQ(sources.width, 4);
+  // Steps of 45° both ways: a column between two planes is the middle of them.
+  ASSERT_EQ(sources.width, 8);
   ASSERT_EQ(sources.height, 5);
   for (int v = 0; v < 5; ++v)
-    for (int h = 0; h < 4; ++h)
-      EXPECT_EQ(sources.pixels[static_cast<std::size_t>(v * 4 + h)][0],
-                static_cast<float>(far.at(static_cast<std::size_t>(h), static_cast<std::size_t>(v))));
+    for (int h = 0; h < 4; ++h) {
+      const auto at = [&](int plane) {
+        return static_cast<float>(far.at(static_cast<std::size_t>(plane % 4), static_cast<std::size_t>(v)));
+      };
+      const auto pixel = [&](int column) {
+        return sources.pixels[static_cast<std::size_t>(v * 8 + column)][0];
+      };
+      EXPECT_EQ(pixel(2 * h), at(h));
+      EXPECT_FLOAT_EQ(pixel(2 * h + 1), (at(h) + at(h + 1)) / 2);
+    }
+}
+
+TEST(LampSources, FarFieldHasStepsAsWideAsHigh) {
+  const auto nodes = [](double across, double along) {
+    FarField far;
+    far.horizontal_deg.clear();
+    for (int i = 0; i * across < 360; ++i) far.horizontal_deg.push_back(i * across);
+    for (int i = 0; i * along <= 180; ++i) far.vertical_deg.push_back(i * along);
+    far.candela.assign(far.horizontal_deg.size() * far.vertical_deg.size(), 1);
+    const LampSources sources = sources_of(far, Vec3d::Zero());
+    return std::array<int, 2>{sources.width, sources.height};
+  };
+  EXPECT_EQ(nodes(15, 1), (std::array<int, 2>{360, 181}));
+  EXPECT_EQ(nodes(2.5, 30), (std::array<int, 2>{144, 73}));
+  EXPECT_EQ(nodes(5, 2), (std::array<int, 2>{216, 91}));   // 5/3° and 2°
+  EXPECT_EQ(nodes(360, 1), (std::array<int, 2>{1, 181}));  // the same all around
+  EXPECT_LE(nodes(90, 0.1)[0], 4096);                      // of textures that drivers hold
 }
 
 TEST(LampSources, FarFieldThatEndsBrightEndsSharply) {
