@@ -65,10 +65,11 @@ struct Range {
   }
 };
 
-// The least tangents between which a source sees all that casts before it; all there are where some is beside it.
+// The least tangents between which a source sees all that casts before it; all there are where some may be beside it: nearer
+// along the axis than near_m, or on triangles that reach from behind it to before it.
 std::array<Range, 2> tangents_of(const Seen& seen, const Vec3d& from, double near_m) {
   std::array<Range, 2> range;
-  bool beside = false;
+  bool beside = false, behind = false;
   const auto add = [&](const Vec3d& p) {
     for (int axis = 0; axis < 2; ++axis) range[static_cast<std::size_t>(axis)].add(p[axis] / p.z());
   };
@@ -77,7 +78,7 @@ std::array<Range, 2> tangents_of(const Seen& seen, const Vec3d& from, double nea
     if (p.z() >= near_m)
       add(p);
     else
-      beside = true;
+      (p.z() > 0 ? beside : behind) = true;
   }
   for (const Seen::Ball& ball : seen.unknown) {
     const Vec3d p = ball.centre - from;
@@ -89,7 +90,7 @@ std::array<Range, 2> tangents_of(const Seen& seen, const Vec3d& from, double nea
       add(p + ball.radius *
                   Vec3d((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1, (corner & 4) != 0 ? 1 : -1));
   }
-  if (beside && range[0].low <= range[0].high)
+  if (beside || (behind && range[0].low <= range[0].high))
     for (Range& r : range) r = {-kWidestTangent, kWidestTangent};
   return range;
 }

@@ -355,6 +355,30 @@ TEST_F(LampPictures, TableOfFewPlanesKeepsThemWhereItsFineRowsAreFiltered) {
   EXPECT_NEAR(off.light, 1, 0.005);
 }
 
+TEST_F(LampPictures, SheetWithHolesCastsWhereItsBallHoldsTheLamp) {
+  // Of such a mesh no more is known than the ball around it, and nothing else casts.
+  Scene scene;
+  Material sheet = lambertian(Rgb::Constant(0.5f));
+  sheet.alpha_cutoff = 0.5f;
+  sheet.double_sided = true;
+  add_mesh(scene, {{-0.4f, 0.8f, 0.4f}, {0.4f, 0.8f, 0.4f}, {0.4f, 0.8f, -0.4f}, {-0.4f, 0.8f, -0.4f}},
+           std::vector<Vec3f>(4, Vec3f::UnitY()), {0, 1, 2, 0, 2, 3}, sheet);
+  add_ground(scene, lambertian(Rgb::Constant(0.6f)), false, 3);
+  NearField lamp = patterned_lamp(2, 2, 0.02, 8);
+  std::fill(lamp.intensity.values.begin(), lamp.intensity.values.end(), Rgb::Constant(10));
+  const std::vector<PlacedLamp> lamps = {{shared({"", lamp, {}}), aimed_down({0, 1, 0}), 1}};
+  // From below the sheet: what it shades, and all that the lamp reaches beside it.
+  const SceneCamera camera = camera_at({0, 0.7f, 0.01f}, {0, 0, 0}, 1.8f);
+  auto renderer = renderer_of(scene);
+  const auto picture = picture_of(renderer, lamps, camera);
+  for (std::size_t k = 0; k < picture.rgba.size(); ++k)
+    if (k % 4 != 3) {
+      ASSERT_EQ(picture.rgba[k], 0) << k;
+    }
+  ASSERT_TRUE(renderer.set_shadows(false).ok());
+  EXPECT_GT(rgb(picture_of(renderer, lamps, camera), kWidth / 2, kHeight / 2)[0], 1);
+}
+
 TEST_F(LampPictures, MorePositionsThanADriverHoldsAreDrawnTogether) {
   const Scene scene = stage();
   const NearField lamp = patterned_lamp(17, 16, 0.01, 32);
