@@ -19,11 +19,21 @@ bool shines(const PlacedLamp& lamp) {
   return lamp.dimming > 0;
 }
 
-// Where a lamp came to look another way for the error of taking positions together: by a fiftieth of the way.
-bool moved_much(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, const Sphere& objects) {
-  const double away = (a.translation() - objects.centre.cast<double>()).norm();
-  return (a.translation() - b.translation()).norm() > 0.02 * away ||
-         Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle() > 0.02;
+// What a lamp lights, as it sees it.
+std::vector<Vec3d> places_seen(const Receivers& receivers, const Eigen::Isometry3d& world_from_lamp) {
+  const Eigen::Isometry3d lamp_from_world = world_from_lamp.inverse();
+  std::vector<Vec3d> places;
+  places.reserve(receivers.places().size());
+  for (const Receivers::Place& place : receivers.places())
+    places.push_back(lamp_from_world * place.point.cast<double>());
+  return places;
+}
+
+// Where a lamp came to see what it lights another way, for the error of taking positions together: a place of it by a
+// fiftieth of its distance, whichever of the two moved.
+bool moved_much(const std::vector<Vec3d>& before, const std::vector<Vec3d>& now) {
+  return !std::equal(before.begin(), before.end(), now.begin(), now.end(),
+                     [](const Vec3d& a, const Vec3d& b) { return (b - a).norm() <= 0.02 * a.norm(); });
 }
 
 GLint wrap_across(SourceMap map) {
@@ -116,11 +126,12 @@ void LampShading::fill_block(Part& part) const {
 Status LampShading::choose_group(Drawn& drawn, const Sphere& objects) {
   const Luminaire& lamp = *drawn.lamp.lamp;
   if (!lamp.near) return {};
-  if (drawn.chosen && !moved_much(drawn.chosen_for, drawn.lamp.world_from_lamp, objects)) return {};
+  std::vector<Vec3d> seen = places_seen(receivers_, drawn.lamp.world_from_lamp);
+  if (drawn.chosen && !moved_much(drawn.chosen_for, seen)) return {};
   const int group = drawn.detail.choose(*lamp.near, options_.max_error, receivers_.places(), objects,
                                         drawn.lamp.world_from_lamp, least_group(*lamp.near), drawn.group);
   drawn.chosen = true;
-  drawn.chosen_for = drawn.lamp.world_from_lamp;
+  drawn.chosen_for = std::move(seen);
   if (group == drawn.group) return {};
   drawn.group = group;
   drawn.near.reset();
@@ -159,14 +170,21 @@ Status LampShading::set(std::span<const PlacedLamp> lamps, const Sphere& objects
       for (auto* part : {&drawn.near, &drawn.far})
         if (*part) (*part)->stale = true;
     drawn.lamp = lamp;
-    if (shines(lamp))
-      if (Status s = choose_group(drawn, objects); !s) return s;
   }
+  return choose_groups(objects);
+}
+
+Status LampShading::choose_groups(const Sphere& objects) {
+  for (Drawn& drawn : lamps_)
+    if (shines(drawn.lamp))
+      if (Status s = choose_group(drawn, objects); !s) return s;
+  surfaces_moved_ = false;
   return {};
 }
 
 void LampShading::follow(const Scene& scene, float farthest_m) {
   receivers_.move(scene);
+  surfaces_moved_ = true;
   for (Drawn& drawn : lamps_)
     for (auto* part : {&drawn.near, &drawn.far})
       if (*part) (*part)->stale = (*part)->maps.follow(farthest_m) || (*part)->stale;

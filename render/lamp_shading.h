@@ -33,6 +33,8 @@ class LampShading {
   Status set(std::span<const PlacedLamp> lamps, const Sphere& objects);
   // The scene that it was made of moved; by so much at most what casts.
   void follow(const Scene& scene, float farthest_m);
+  // Before a frame: which positions are drawn together follows a scene that moved under lamps that rest. Errors as of set().
+  Status follow_detail(const Sphere& objects) { return surfaces_moved_ ? choose_groups(objects) : Status(); }
 
   // What casts, by how fine it is to be: for maps up to shadow_size, and for larger ones and lamps nearby.
   struct AllCasters {
@@ -77,7 +79,7 @@ class LampShading {
     LampDetail detail;
     int group = 0;
     std::optional<Part> near, far;
-    Eigen::Isometry3d chosen_for = Eigen::Isometry3d::Identity();  // the group
+    std::vector<Vec3d> chosen_for;  // places that it lit, in its frame, when its group was chosen
     bool chosen = false;
   };
   struct Program {
@@ -86,6 +88,7 @@ class LampShading {
     gl::Program program;
   };
   Result<Part> upload(LampSources sources) const;
+  Status choose_groups(const Sphere& objects);
   Status choose_group(Drawn& drawn, const Sphere& objects);
   Status draw_maps(Drawn& drawn, Part& part, const AllCasters& casters);
   void fill_block(Part& part) const;
@@ -96,6 +99,7 @@ class LampShading {
   MaterialKinds kinds_;
   bool nothing_casts_ = false;
   Receivers receivers_;
+  bool surfaces_moved_ = false;  // since groups were chosen
   std::vector<Drawn> lamps_;
   std::vector<Program> programs_;
   gl::Program map_program_;

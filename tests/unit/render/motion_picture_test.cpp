@@ -9,6 +9,7 @@
 #include "render/gltf_scene.h"
 #include "render/scene_motion.h"
 #include "tests/support/gltf_document.h"
+#include "tests/support/lamp_reference.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/render/render_fixture.h"
 
@@ -82,6 +83,34 @@ TEST_F(MovingPictures, ABallThatMovedLooksLikeABallThatStandsThere) {
     EXPECT_LE(differ, simplify ? 2 * 3 * 40 * 4 / 4 : 0);
     ASSERT_TRUE(motion.move_to(0));
   }
+}
+
+TEST_F(MovingPictures, WhatMovesToALampThatRestsIsLitByAsManyPointsAsItNeedsThere) {
+  Document moving = ball_on_floor({0, 0.5f, 0});
+  animate(moving, 0, "translation", {0, 1}, {0, 0.5f, 0, 0, 7, 0}, "VEC3", 3);
+  auto scene = read(moving);
+  ASSERT_TRUE(scene.ok());
+  const render::PlacedLamp lamps[] = {
+      {std::make_shared<const Luminaire>(Luminaire{"", patterned_lamp(9, 7, 0.05, 16), {}}),
+       aimed_down({0, 8, 0}), 1}};
+  render::RendererOptions options;
+  options.width = options.height = 16;
+  options.lamp_error = 0.05;
+  const SceneCamera camera = camera_at({0, 3, 6}, {0, 0.5f, 0});
+  const auto sources_of = [&](render::Renderer& renderer) {
+    EXPECT_TRUE(renderer.render({}, camera).ok());
+    return renderer.lamps().counts().sources;
+  };
+  auto renderer = render::Renderer::create(*scene, options);
+  ASSERT_TRUE(renderer.ok() && renderer->set_lamps(lamps).ok());
+  const std::size_t afar = sources_of(*renderer);
+  render::SceneMotion motion(*scene);
+  ASSERT_TRUE(motion.move_to(0.999));
+  renderer->move(*scene, motion.moved());
+  auto fresh = render::Renderer::create(*scene, options);
+  ASSERT_TRUE(fresh.ok() && fresh->set_lamps(lamps).ok());
+  EXPECT_GT(sources_of(*renderer), afar);
+  EXPECT_EQ(sources_of(*renderer), sources_of(*fresh));
 }
 
 double relative_rmse(const render::RadiancePicture& shown, const render::RadiancePicture& exact) {
