@@ -182,6 +182,14 @@ Status read_tilt(Reader& reader, PhotometricFile& out) {
   return {};
 }
 
+// "mW/sr" where a label's words speak of a unit of radiant intensity; else empty.
+std::string radiometric_unit(std::string_view line) {
+  const auto at = line.find("W/sr");
+  if (at == std::string_view::npos || !line.starts_with("[")) return {};
+  const auto begin = line.find_last_of(" \t([:=,", at);
+  return std::string(line.substr(begin + 1, at + 4 - begin - 1));
+}
+
 // Labels, down to TILT=.
 Status read_labels(Reader& reader, PhotometricFile& out, const std::filesystem::path& file) {
   std::string manufacturer, product;
@@ -201,6 +209,8 @@ Status read_labels(Reader& reader, PhotometricFile& out, const std::filesystem::
     if (const auto text = keyword("[LUMINAIRE]")) product = *text;
     if (const auto text = keyword("[_INTENSITYUNITS]"); text && *text != "cd")
       out.remarks.push_back("intensities are in " + *text + ", taken as candela");
+    if (const std::string unit = radiometric_unit(*line); !unit.empty())
+      out.remarks.push_back("speaks of " + unit + ": its intensities are taken as candela");
     if (const auto tilt = keyword("TILT=")) {
       out.name = manufacturer + (manufacturer.empty() || product.empty() ? "" : " ") + product;
       if (*tilt == "NONE") return {};

@@ -253,6 +253,22 @@ Status scale_to_reference(const Rig& rig, const std::string& file, BuiltLamp& bu
   return {};
 }
 
+// A lamp takes no light away.
+Status check_light(const std::string& file, BuiltLamp& built) {
+  const double flux_lm = luminance(luminous_flux(built.lamp));
+  if (flux_lm < 0) {
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        ": the pictures sum up to %.3g lm, allowed: 0 or more; are the slides positive and negative "
+        "swapped, or is the dark frame of another exposure?",
+        flux_lm);
+    return Error{ErrorKind::bad_input, file + text};
+  }
+  if (flux_lm == 0) built.remarks.emplace_back("no picture has any light: a dark lamp");
+  return {};
+}
+
 }  // namespace
 
 Result<BuiltLamp> build_lamp(const Rig& rig, const std::filesystem::path& folder, const RigPictures& pictures,
@@ -304,6 +320,7 @@ Result<BuiltLamp> build_lamp(const Rig& rig, const std::filesystem::path& folder
   restore_centres(images, blur.cwiseMin(0.25));
   remark_on_positions(*positions, built);
   built.lamp = {rig.name, point_sources(built.measured), std::nullopt};
+  if (const Status light = check_light(file, built); !light) return light.error();
   if (const Status scaled = scale_to_reference(rig, file, built); !scaled) return scaled.error();
   remark_on_borders(built);
   return built;

@@ -7,8 +7,8 @@
 namespace lightwell {
 
 struct FarGrid {
-  int planes = 72;   // C planes around the aim, at least 1
-  int angles = 181;  // γ from 0 to 180°, at least 2
+  int planes = 180;  // C planes around the aim, at least 1
+  int angles = 361;  // γ from 0 to 180°, at least 2
 };
 
 // What a lamp is from far away: of a near field all sources' intensity in each direction, 0 or more, at the grid's angles in

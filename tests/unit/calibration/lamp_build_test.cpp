@@ -233,6 +233,30 @@ TEST(LampBuild, BadPicturesAreRefused) {
       "dark.exr: 0.0025 of its pixels are saturated");
 }
 
+// As every one of a crew does once.
+TEST(LampBuild, SwappedSlidesAreRefusedAndADarkLampIsSaid) {
+  expect_refused(
+      [](SimulatedRig& r, Changed& c) {
+        for (const Rig::Picture& picture : r.rig.pictures) {
+          std::string other = picture.file;  // 1_2p.exr, 1_2n.exr
+          char& part = other[other.size() - 5];
+          part = part == 'p' ? 'n' : 'p';
+          c[picture.file] = r.picture(other);
+        }
+      },
+      "allowed: 0 or more; are the slides positive and negative swapped");
+  SimulatedRig dark = small_rig();
+  dark.list_pictures();
+  const auto built =
+      calibration::build_lamp(dark.rig, "", [&](const std::string& file) -> Result<LatLongImage> {
+        LatLongImage picture = dark.picture(file);
+        for (Rgb& pixel : picture.pixels) pixel.setZero();
+        return picture;
+      });
+  ASSERT_TRUE(built) << built.error().message;
+  EXPECT_THAT(built->remarks, testing::Contains(HasSubstr("a dark lamp")));
+}
+
 TEST(LampBuild, MarksThatDoNotFixTheScreenAreRefused) {
   const auto with_marks = [](std::vector<Rig::Mark> marks) {
     return [marks](SimulatedRig& r, Changed&) {

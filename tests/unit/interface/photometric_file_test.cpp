@@ -82,6 +82,14 @@ TEST(IesFile, TiltIsKeptAndMayStandInAFileBeside) {
   expect_bad(parse_ies(ies(numbers, "TILT=nowhere.tlt"), folder.path() / "lamp.ies"), "nowhere.tlt");
 }
 
+TEST(IesFile, UnitsThatAreNotCandelaAreSaid) {
+  std::string text = ies("1 -1 1 2 1 1 2 0 0 0\r\n1 1 10\r\n0 90\r\n0\r\n100 100");
+  text.replace(text.find("[MANUFAC]"), 0, "[MORE] file are expressed in mW/sr (200-280nm).\r\n");
+  const auto file = good_ies(text);
+  ASSERT_EQ(file.remarks.size(), 1u);
+  EXPECT_EQ(file.remarks[0], "speaks of mW/sr: its intensities are taken as candela");
+}
+
 TEST(IesFile, BadInputNamesLineFieldValueAndRange) {
   expect_bad(parse_ies("", "lamp.ies"), "lamp.ies: has no line TILT=");
   expect_bad(parse_ies(ies("1 -1 1 2"), "lamp.ies"),
