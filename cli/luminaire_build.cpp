@@ -8,11 +8,11 @@
 
 #include "calibration/luminaire/lamp_build.h"
 #include "cli/command.h"
+#include "cli/luminaire_output.h"
 #include "cli/progress.h"
 #include "interface/luminaire_file.h"
 #include "interface/option_range.h"
 #include "interface/printable.h"
-#include "interface/same_file.h"
 
 namespace lightwell::cli {
 namespace {
@@ -45,12 +45,10 @@ int run(const BuildArguments& o) {
   const std::filesystem::path folder = o.folder;
   const auto rig = read_rig(folder);
   if (!rig) return fail(rig.error());
-  std::vector<std::string> inputs = {"rig.toml", "positions.csv"};
-  if (!rig->dark.empty()) inputs.push_back(rig->dark);
-  for (const Rig::Picture& picture : rig->pictures) inputs.push_back(picture.file);
-  for (const std::string& input : inputs)
-    if (const Status other = check_output_is_no_input(o.out, {folder / input}); !other)
-      return fail(other.error());
+  std::vector<std::string> inputs = {folder / "rig.toml", folder / "positions.csv"};
+  if (!rig->dark.empty()) inputs.push_back(folder / rig->dark);
+  for (const Rig::Picture& picture : rig->pictures) inputs.push_back(folder / picture.file);
+  if (const Status good = check_luminaire_output(o.out, ".exr", inputs); !good) return fail(good.error());
   std::optional<Progress> bar;
   const auto built = calibration::build_lamp(*rig, folder, calibration::exr_pictures(folder),
                                              [&](std::size_t done, std::size_t all) {

@@ -7,11 +7,11 @@
 #include <string>
 
 #include "cli/command.h"
+#include "cli/luminaire_output.h"
 #include "interface/luminaire_file.h"
 #include "interface/option_range.h"
 #include "interface/photometric_file.h"
 #include "interface/printable.h"
-#include "interface/same_file.h"
 #include "lighting/luminaire/far_projection.h"
 
 namespace lightwell::cli {
@@ -35,7 +35,8 @@ PhotometricFile far_file(const Luminaire& lamp, const FarGrid& grid) {
 }
 
 int run(const ExportArguments& o) {
-  if (const Status other = check_output_is_no_input(o.out, {o.lamp}); !other) return fail(other.error());
+  if (const Status good = check_luminaire_output(o.out, ".ies", {&o.lamp, 1}); !good)
+    return fail(good.error());
   const auto lamp = read_luminaire(o.lamp);
   if (!lamp) return fail(lamp.error());
   const PhotometricFile file = far_file(*lamp, o.grid);

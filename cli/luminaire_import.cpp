@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/luminaire_output.h"
 #include "interface/luminaire_file.h"
 #include "interface/option_range.h"
 #include "interface/photometric_file.h"
 #include "interface/plain_ray_file.h"
 #include "interface/printable.h"
 #include "interface/ray_file.h"
-#include "interface/same_file.h"
 
 namespace lightwell::cli {
 namespace {
@@ -103,7 +103,8 @@ void report(const ImportArguments& o, const Imported& imported) {
 }
 
 int run(const ImportArguments& o) {
-  if (const Status other = check_output_is_no_input(o.out, {o.file}); !other) return fail(other.error());
+  if (const Status good = check_luminaire_output(o.out, ".exr", {&o.file, 1}); !good)
+    return fail(good.error());
   auto imported = is_ray_file(o.file) ? import_rays(o) : import_photometry(o);
   if (!imported) return fail(imported.error());
   if (const Status written = write_luminaire(o.out, imported->lamp); !written) return fail(written.error());

@@ -125,7 +125,13 @@ TEST_F(LuminaireCommandTest, BadInputIsOneLineAndLeavesNothing) {
   std::ofstream(path("text.tm25ray")) << "TM26";
   expect_refused(import("text.tm25ray"), 3, "not a ray file");
   EXPECT_FALSE(std::filesystem::exists(path("lamp.exr")));
+  expect_refused(lightwell({"luminaire", "import", path("even.ies"), "--out", path("lamp.png")}), 2,
+                 "lamp.png, allowed: a name that ends in .exr");
+  expect_refused(lightwell({"luminaire", "import", path("even.ies"), "--out", path("none/lamp.exr")}), 1,
+                 "none");
   ASSERT_EQ(import("even.ies").exit_code, 0);
+  expect_refused(lightwell({"luminaire", "export", path("lamp.exr"), "--out", path("lamp.txt")}), 2,
+                 "lamp.txt, allowed: a name that ends in .ies");
   const auto query = [&](std::vector<std::string> where) {
     where.insert(where.begin(), {"luminaire", "query", path("lamp.exr")});
     return lightwell(where);
