@@ -251,12 +251,13 @@ std::size_t LampShading::passes() const {
 Result<const gl::Program*> LampShading::program(SourceMap map, int faces) {
   for (const Program& there : programs_)
     if (there.map == map && there.faces == faces) return &there.program;
-  std::string facts = "#define PLANE 0\n#define HEMISPHERE 1\n#define SPHERE 2\n#define SOURCE_MAP " +
-                      std::to_string(static_cast<int>(map)) + "\n#define HAS_SHADOWS " +
-                      (faces > 0 ? "1" : "0") + "\n#define FACES " + std::to_string(faces) +
-                      // Depth: beyond the rounding of 24 bits and of single precision.
-                      "\n#define DEPTH_SLACK 0.000001\n#define LEAST_COSINE 0.05\n" + kinds_.facts() +
-                      surface_code() + reflectance_code();
+  std::string facts =
+      "#define PLANE 0\n#define HEMISPHERE 1\n#define SPHERE 2\n#define SOURCE_MAP " +
+      std::to_string(static_cast<int>(map)) + "\n#define HAS_SHADOWS " + (faces > 0 ? "1" : "0") +
+      "\n#define FACES " + std::to_string(faces) +
+      // Depth: beyond the rounding of 24 bits, 3e-8, and of single precision, in the map and here.
+      "\n#define DEPTH_SLACK 2.5e-7\n#define LEAST_COSINE 0.05\n" + kinds_.facts() + surface_code() +
+      reflectance_code();
   if (faces > 0) facts += shadow_texel_code() + std::string(shader_text("lamp_shadow.glsl"));
   auto made = gl::make_program("fullscreen_vertex", "lamp_fragment", facts);
   if (!made) return made.error();

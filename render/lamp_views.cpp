@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kWidestTangent = 4;  // of a single map: 76° to a side
 constexpr double kWidest_rad = 70 * kPi / 180;
-// 24 bits of depth are a millionth of the farthest away there, and 2000 times finer nearby.
+// DEPTH_SLACK (lamp_shading.cpp) is then 2.5e-4 of the farthest away there, 2.5 mm in 10 m, and less by the square of what is
+// nearer.
 constexpr double kFarToNear = 1000;
 constexpr double kBorderTexels = 2;  // that no look-up reaches beyond
 

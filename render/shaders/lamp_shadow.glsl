@@ -31,13 +31,19 @@ float lamp_visibility(vec3 from, vec3 plane, float biased, vec4 fit, int tile) {
   if (from.z <= 0.0 || fit.x == 0.0) return 1.0;
   // Along the normal: for curved surfaces that triangles stand for a tenth of a texel, and what casters are off.
   float texel_m = from.z * map_texel / min(fit.x, fit.y);
-  from += plane * (biased * (0.1 * texel_m + caster_slack));
+  // Where the surface's own plane passes the source by a few texels, some of the four that a look-up takes look under what
+  // stands on the surface. A texel higher none does: a metre along the normal moves the place by up * fit / from.z.
+  vec2 up = plane.xy - plane.z * from.xy / from.z;
+  float texel_up = from.z * map_texel * dot(abs(up), 1.0 / fit.xy) / max(dot(up, up), 0.05);
+  float lift = clamp(3.0 + 0.5 * dot(plane, from) / max(texel_up, 1e-9), 0.0, 1.0);
+  from += plane * max(lift * texel_up, biased * (0.1 * texel_m + caster_slack));
   float inverse = 1.0 / max(from.z, 1e-6);
   // The plane's inverse distance along the axis is dot(plane, tangents) / toward: even over the map, as a map's depth is.
   float toward = min(dot(plane, from), -LEAST_COSINE * length(from));
   BeforeMap b;
   b.place = from.xy * inverse * fit.xy + fit.zw;
-  b.depth = depth_terms.x - depth_terms.y * inverse - DEPTH_SLACK;
+  // What stands in the maps does not shade itself; the bottom of what stands on a floor that does not seals it to the floor.
+  b.depth = depth_terms.x - depth_terms.y * inverse + (biased > 0.0 ? -DEPTH_SLACK : DEPTH_SLACK);
   b.slope = plane.xy * (-depth_terms.y * biased / toward) / fit.xy;
   b.tile = vec3(vec2(float(tile % tile_columns), float(tile / tile_columns)) * tile_side, tile_side);
   b.texel = map_texel;

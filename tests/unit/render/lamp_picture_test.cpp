@@ -379,6 +379,60 @@ TEST_F(LampPictures, SheetWithHolesCastsWhereItsBallHoldsTheLamp) {
   EXPECT_GT(rgb(picture_of(renderer, lamps, camera), kWidth / 2, kHeight / 2)[0], 1);
 }
 
+TEST_F(LampPictures, NoLightGoesUnderWhatStandsOnTheGroundThatPassesTheLamp) {
+  // Texels below the ground's horizon look under the box; at these heights look-ups take part of them.
+  Scene scene;
+  add_ground(scene, lambertian(Rgb::Constant(0.6f)), true, 4);
+  add_box(scene, {-0.2f, 0, -0.2f}, {0.2f, 0.4f, 0.2f}, lambertian(Rgb::Constant(0.5f)));
+  const SceneCamera camera = camera_at({0, 8, 0.01f}, {0, 0, 0}, 0.5f);
+  auto renderer = renderer_of(scene);
+  for (const Luminaire& lamp : {Luminaire{"", {}, uneven_far_field()}, lamp_of_rays()})
+    for (const double height : {0.0005, 0.002, 0.005, 0.02}) {
+      // Of the positions, one row is at that height and one is below the ground.
+      const double up =
+          lamp.near ? -lamp.near->intensity.planes.first_m.y() - lamp.near->intensity.planes.spacing_m : 0;
+      Eigen::Isometry3d pose(Eigen::Translation3d(0.6, height + up, 0.6));
+      pose.rotate(Eigen::AngleAxisd(kPi / 4, Vec3d::UnitY()));  // toward the box
+      const std::vector<PlacedLamp> lamps = {{shared(lamp), pose, 1}};
+      const auto reference = lamp_picture_by_force(scene, lamps, camera, kWidth, kHeight);
+      ASSERT_TRUE(renderer.set_shadows(false).ok());
+      const auto unshadowed = picture_of(renderer, lamps, camera);
+      ASSERT_TRUE(renderer.set_shadows(true).ok());
+      const auto picture = picture_of(renderer, lamps, camera);
+      double through = 0, full = 0;
+      const auto dark = [&](int x, int y) {
+        return reference[static_cast<std::size_t>(y * kWidth + x)].maxCoeff() == 0;
+      };
+      // In the shadow, a pixel from its edge.
+      for (int y = 1; y < kHeight - 1; ++y)
+        for (int x = 1; x < kWidth - 1; ++x) {
+          if (!dark(x, y) || !dark(x - 1, y) || !dark(x + 1, y) || !dark(x, y - 1) || !dark(x, y + 1))
+            continue;
+          through += static_cast<double>(rgb(picture, x, y)[0]);
+          full += static_cast<double>(rgb(unshadowed, x, y)[0]);
+        }
+      EXPECT_GT(full, 0) << height;
+      EXPECT_LE(through, 1e-3 * full) << height;
+    }
+}
+
+TEST_F(LampPictures, LampInsideWhatStandsOnTheGroundShinesUnderNoneOfItsWalls) {
+  Scene scene;
+  add_ground(scene, lambertian(Rgb::Constant(0.6f)), true, 4);
+  add_box(scene, {-0.2f, 0, -0.2f}, {0.2f, 0.4f, 0.2f}, lambertian(Rgb::Constant(0.5f)));
+  auto renderer = renderer_of(scene);
+  for (const double height : {0.02, 0.2, 0.39}) {
+    // Along the bottom edges of two walls.
+    const auto picture =
+        picture_of(renderer, {{shared({"", {}, uneven_far_field()}), aimed_down({0, height, 0}), 1}},
+                   camera_at({0.8f, 0.5f, 0.9f}, {0.1f, 0, 0.1f}, 0.5f));
+    for (std::size_t k = 0; k < picture.rgba.size(); ++k)
+      if (k % 4 != 3) {
+        ASSERT_EQ(picture.rgba[k], 0) << k << " " << height;
+      }
+  }
+}
+
 TEST_F(LampPictures, MorePositionsThanADriverHoldsAreDrawnTogether) {
   const Scene scene = stage();
   const NearField lamp = patterned_lamp(17, 16, 0.01, 32);
