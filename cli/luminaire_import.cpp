@@ -47,6 +47,19 @@ bool is_ray_file(const std::filesystem::path& file) {
          ending == ".dat";
 }
 
+// Who imports rays and not a table wants the light near by: 0.1 m away.
+void remark_on_spacing(const LampPlanes& planes, std::vector<std::string>& remarks) {
+  constexpr double kNear_m = 0.1;
+  if (nearest_m(planes) <= kNear_m) return;
+  char what[200];
+  std::snprintf(
+      what, sizeof what,
+      "its %d x %d sources are %.3g m apart: nearer than %.3g m the light may err by more than 3 %%; more "
+      "--positions serve nearer",
+      planes.positions[0], planes.positions[1], planes.spacing_m, nearest_m(planes));
+  remarks.emplace_back(what);
+}
+
 Result<Imported> import_rays(const ImportArguments& o) {
   const std::string ending = ending_of(o.file);
   auto file = ending == ".tm25ray" || ending == ".tm25" ? read_tm25(o.file) : read_plain_rays(o.file);
@@ -57,6 +70,7 @@ Result<Imported> import_rays(const ImportArguments& o) {
   out.stated_flux_lm = file->stated_flux_lm;
   out.rays = file->rays.size();
   out.remarks = std::move(file->remarks);
+  remark_on_spacing(out.lamp.near->intensity.planes, out.remarks);
   return out;
 }
 
@@ -97,7 +111,13 @@ void report(const ImportArguments& o, const Imported& imported) {
                                  {"near_field", imported.lamp.near.has_value()},
                                  {"flux_lm", flux}};
   if (imported.stated_flux_lm > 0) json["stated_flux_lm"] = imported.stated_flux_lm;
-  if (imported.rays > 0) json["rays"] = imported.rays;
+  if (imported.rays > 0) {
+    const LampPlanes& planes = imported.lamp.near->intensity.planes;
+    json["rays"] = imported.rays;
+    json["positions"] = planes.positions;
+    json["spacing_m"] = planes.spacing_m;
+    json["nearest_m"] = nearest_m(planes);
+  }
   json["remarks"] = imported.remarks;
   std::printf("%s\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
 }
@@ -125,7 +145,9 @@ Command add_luminaire_import(CLI::App& luminaire) {
   command->add_option("file", o->file, "FILE.ies, FILE.ldt, FILE.tm25ray or FILE.csv")
       ->required()
       ->type_name("FILE");
-  command->add_option("--positions", o->rays.positions, "Of a ray file: point sources a side")
+  command
+      ->add_option("--positions", o->rays.positions,
+                   "Of a ray file: point sources a side; a long lamp has as many in all")
       ->check(whole_numbers(2, 64))
       ->capture_default_str();
   command->add_option("--pixels", o->rays.pixels, "Of a ray file: pixels a side of each source's image")

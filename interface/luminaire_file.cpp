@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "interface/atomic_file.h"
@@ -105,11 +106,56 @@ LampPlanes planes_from(const JsonFields& fields) {
   return p;
 }
 
-std::vector<double> angles_of(const JsonFields& fields, const char* key) {
+// What a far field's angles must be: lighting/luminaire/far_field.h.
+struct AngleRange {
+  std::size_t least_count;
+  double lowest_deg, highest_deg;
+  bool with_highest = true;
+};
+AngleRange horizontal_range(PhotometricSystem system) {
+  switch (system) {
+    case PhotometricSystem::b:
+      return {1, -90, 90};
+    case PhotometricSystem::a:
+      return {1, -180, 180};
+    case PhotometricSystem::c:
+      break;
+  }
+  return {1, 0, 360, false};
+}
+AngleRange vertical_range(PhotometricSystem system) {
+  switch (system) {
+    case PhotometricSystem::b:
+      return {2, -180, 180};
+    case PhotometricSystem::a:
+      return {2, -90, 90};
+    case PhotometricSystem::c:
+      break;
+  }
+  return {2, 0, 180};
+}
+
+std::vector<double> angles_of(const JsonFields& fields, const char* key, const AngleRange& range) {
   std::vector<double> angles = fields.number_list(key);
-  if (angles.empty() ||
-      std::adjacent_find(angles.begin(), angles.end(), std::greater_equal<>()) != angles.end())
-    fields.fail(key, "does not increase, allowed: increasing angles, at least one");
+  if (angles.size() < range.least_count)
+    fields.fail(key, "= an array of " + std::to_string(angles.size()) + ": allowed at least " +
+                         std::to_string(range.least_count) + " angles");
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const double angle = angles[i];
+    const auto fail = [&](const std::string& what) {
+      char number[40];
+      std::snprintf(number, sizeof number, "= %.9g", angle);
+      fields.fail(std::string(key) + "[" + std::to_string(i) + "]", number + what);
+    };
+    if (angle < range.lowest_deg || angle > range.highest_deg ||
+        (angle == range.highest_deg && !range.with_highest)) {
+      char allowed[60];
+      std::snprintf(allowed, sizeof allowed, ": allowed %g to %s%g", range.lowest_deg,
+                    range.with_highest ? "" : "below ", range.highest_deg);
+      fail(allowed);
+    }
+    if (i > 0 && !(angle > angles[i - 1])) fail(" does not increase: allowed increasing angles");
+  }
   return angles;
 }
 
@@ -121,8 +167,8 @@ FarField far_from(const JsonFields& fields) {
   far.system = system == "C"   ? PhotometricSystem::c
                : system == "B" ? PhotometricSystem::b
                                : PhotometricSystem::a;
-  far.horizontal_deg = angles_of(fields, "horizontal_deg");
-  far.vertical_deg = angles_of(fields, "vertical_deg");
+  far.horizontal_deg = angles_of(fields, "horizontal_deg", horizontal_range(far.system));
+  far.vertical_deg = angles_of(fields, "vertical_deg", vertical_range(far.system));
   far.candela.resize(far.horizontal_deg.size() * far.vertical_deg.size());
   constexpr double kMostCandela = 1e30;
   fields.numbers("candela", far.candela, 0, kMostCandela);

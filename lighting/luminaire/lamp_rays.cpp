@@ -15,6 +15,10 @@ namespace {
 // Rays that run flatter than this are not the near field's: they cross the sampling plane far away.
 constexpr double kLeastDrop = 0.03;
 constexpr double kOutside = 0.0005;  // of the flux at each end of the positions
+// A lamp as wide, in spacings, as this or less is one row in its middle: two, half a spacing beside it, are the worse
+// likeness. The variance of its light across is off by w²/12, of two rows by 1/4 − w²/12.
+constexpr double kRowWidth = 1.22;
+constexpr double kPoint_m = 1e-9;  // smaller lamps are points
 constexpr int kRestPlanes = 24, kRestAngles = 36;
 
 struct Weighted {
@@ -48,6 +52,56 @@ Vec2d crossing(const LampRay& ray, double z_m) {
   return at.head<2>();
 }
 
+// Where near rays cross the sampling plane: nearly all of them, and their mean by flux.
+struct Extent {
+  Vec2d low = Vec2d::Zero(), high = Vec2d::Zero(), mean = Vec2d::Zero();
+};
+Extent extent_of(std::span<const LampRay> rays, double z_m) {
+  Extent extent;
+  for (int axis = 0; axis < 2; ++axis) {
+    std::vector<Weighted> places;
+    for (const LampRay& ray : rays)
+      if (ray.direction.z() < -kLeastDrop) places.push_back({crossing(ray, z_m)[axis], ray.flux_lm});
+    if (places.empty()) break;
+    extent.low[axis] = quantile(places, kOutside);
+    extent.high[axis] = quantile(places, 1 - kOutside);
+    double flux = 0, sum = 0;
+    for (const Weighted& place : places) {
+      sum += place.weight * std::clamp(place.value, extent.low[axis], extent.high[axis]);
+      flux += place.weight;
+    }
+    extent.mean[axis] = sum / flux;
+  }
+  return extent;
+}
+
+// The finest square grid of no more than positions² that spans the longer side exactly: a long lamp has its positions along
+// it, where they are needed, and not the length's coarse spacing for both sides.
+void lay_grid(const Extent& extent, int positions, LampPlanes& planes) {
+  const Vec2d size = extent.high - extent.low;
+  const int longer = size.y() > size.x() ? 1 : 0, shorter = 1 - longer;
+  if (!(size[longer] > kPoint_m)) {
+    planes.first_m = extent.mean;
+    planes.spacing_m = 1e-3;
+    return;
+  }
+  std::array<int, 2> count{};
+  for (int along = positions * positions; along >= positions; --along) {
+    planes.spacing_m = size[longer] / (along - 1);
+    const double across = size[shorter] / planes.spacing_m;
+    const bool long_row = across <= std::min(kRowWidth, (along - 1) / 2.0);
+    const int rows = long_row ? 1 : static_cast<int>(std::ceil(across - 1e-9)) + 1;
+    count = longer == 0 ? std::array{along, rows} : std::array{rows, along};
+    if (along * rows <= positions * positions) break;  // positions × positions at the latest
+  }
+  planes.positions = count;
+  for (int axis = 0; axis < 2; ++axis) {
+    const int last = count[static_cast<std::size_t>(axis)] - 1;
+    const double middle = last == 0 ? extent.mean[axis] : (extent.low[axis] + extent.high[axis]) / 2;
+    planes.first_m[axis] = middle - last / 2.0 * planes.spacing_m;
+  }
+}
+
 LampPlanes planes_of(std::span<const LampRay> rays, const RayBinning& options) {
   LampPlanes planes;
   planes.map = LampMap::hemisphere;
@@ -57,28 +111,7 @@ LampPlanes planes_of(std::span<const LampRay> rays, const RayBinning& options) {
   std::vector<Weighted> heights;
   for (const LampRay& ray : rays) heights.push_back({ray.origin_m.z(), ray.flux_lm});
   planes.z_m = quantile(heights, 0.5);
-  Vec2d low = Vec2d::Zero(), high = Vec2d::Zero();
-  for (int axis = 0; axis < 2; ++axis) {
-    std::vector<Weighted> places;
-    for (const LampRay& ray : rays)
-      if (ray.direction.z() < -kLeastDrop) places.push_back({crossing(ray, planes.z_m)[axis], ray.flux_lm});
-    if (places.empty()) break;
-    low[axis] = quantile(places, kOutside);
-    high[axis] = quantile(places, 1 - kOutside);
-  }
-  const double side = (high - low).maxCoeff();
-  const Vec2d middle = (low + high) / 2;
-  if (!(side > 0)) {  // a point
-    planes.first_m = middle;
-    planes.spacing_m = 1e-3;
-    return planes;
-  }
-  planes.spacing_m = side / (options.positions - 1);
-  for (int axis = 0; axis < 2; ++axis) {
-    const auto count = static_cast<int>(std::ceil((high - low)[axis] / planes.spacing_m - 1e-9)) + 1;
-    planes.positions[static_cast<std::size_t>(axis)] = count;
-    planes.first_m[axis] = middle[axis] - (count - 1) / 2.0 * planes.spacing_m;
-  }
+  lay_grid(extent_of(rays, planes.z_m), options.positions, planes);
   return planes;
 }
 
@@ -141,6 +174,11 @@ Luminaire bin_rays(std::span<const LampRay> rays, const RayBinning& options) {
   for (std::size_t h = 0; h < rest.horizontal_deg.size(); ++h)
     for (std::size_t v = 0; v < rest.vertical_deg.size(); ++v) rest.at(h, v) /= angles[v];
   return lamp;
+}
+
+double nearest_m(const LampPlanes& planes) {
+  constexpr double kSpacings = 2;
+  return kSpacings * planes.spacing_m;
 }
 
 }  // namespace lightwell

@@ -79,6 +79,19 @@ Rgbd intensity_between(const NearField& lamp, const Vec2d& place, const Vec2d& m
   return sum * intensity_factor(planes, planes.first_m + planes.spacing_m * place, measurement);
 }
 
+// Sources along one axis of the grid, counted in parts of a spacing.
+struct Sites {
+  int first, last, a_spacing;
+};
+// All of cubic convolution's support, negative lobes and two spacings beyond the outer positions included: each
+// position's weights then sum to one and have no first or second moment, so that neither flux nor far light depends on the
+// subdivision. One row is a line: nothing tells how wide it is.
+Sites sites_along(int positions, int subdivision) {
+  if (positions == 1 || subdivision == 1) return {0, positions - 1, 1};
+  const int beyond = 2 * subdivision - 1;
+  return {-beyond, (positions - 1) * subdivision + beyond, subdivision};
+}
+
 }  // namespace
 
 NearField point_sources(const MeasuredLamp& lamp) {
@@ -106,12 +119,12 @@ int subdivision_at(const NearField& lamp, double distance_m) {
 Rgbd illuminance(const NearField& lamp, const Vec3d& point, const Vec3d& normal, int subdivision) {
   const LampPlanes& planes = lamp.intensity.planes;
   if (!(point.z() < planes.z_m)) return Rgbd::Zero();
-  // Between the last position and where the next would be light fades to nothing.
-  const int margin = subdivision - 1;
+  const Sites across = sites_along(planes.positions[0], subdivision);
+  const Sites down = sites_along(planes.positions[1], subdivision);
   Rgbd sum = Rgbd::Zero();
-  for (int j = -margin; j <= (planes.positions[1] - 1) * subdivision + margin; ++j)
-    for (int i = -margin; i <= (planes.positions[0] - 1) * subdivision + margin; ++i) {
-      const Vec2d place = Vec2d(i, j) / subdivision;
+  for (int j = down.first; j <= down.last; ++j)
+    for (int i = across.first; i <= across.last; ++i) {
+      const Vec2d place(static_cast<double>(i) / across.a_spacing, static_cast<double>(j) / down.a_spacing);
       const Vec2d from = planes.first_m + planes.spacing_m * place;
       const Vec3d way = point - planes.place(from);
       const double facing = -way.dot(normal);
@@ -120,7 +133,7 @@ Rgbd illuminance(const NearField& lamp, const Vec3d& point, const Vec3d& normal,
       sum +=
           intensity_between(lamp, place, planes.on_map(from, way)) * (facing / (square * std::sqrt(square)));
     }
-  return (sum / (subdivision * subdivision)).max(0.0);
+  return (sum / (across.a_spacing * down.a_spacing)).max(0.0);
 }
 
 Rgbd luminous_flux(const NearField& lamp) {

@@ -22,7 +22,7 @@ int subdivision_at(const NearField& lamp, double distance_m);
 
 // Of a surface at a point below the sampling plane (else 0); normal: unit. Lux, 0 or more. Where sources are
 // subdivided, the light toward a fixed point of the measurement plane is interpolated between positions (cubic
-// convolution): neighbours see that point alike.
+// convolution): neighbours see that point alike. The flux is the same at every subdivision.
 Rgbd illuminance(const NearField& lamp, const Vec3d& point, const Vec3d& normal, int subdivision);
 inline Rgbd illuminance(const NearField& lamp, const Vec3d& point, const Vec3d& normal) {
   const double below = lamp.intensity.planes.z_m - point.z();

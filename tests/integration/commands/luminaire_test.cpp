@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -77,6 +78,28 @@ TEST_F(LuminaireCommandTest, RaysAsTextAreALampAndItsFarFieldGoesOut) {
   ASSERT_EQ(back.exit_code, 0) << back.err;
   EXPECT_NEAR(nlohmann::json::parse(back.out)["flux_lm"].get<double>(), report["flux_lm"].get<double>(),
               1e-5);
+}
+
+TEST_F(LuminaireCommandTest, SaysHowNearALampOfRaysServes) {
+  std::ofstream rays(path("panel.csv"));
+  rays << "x,y,z,u,v,w,flux\n";
+  for (int y = 0; y <= 20; ++y)
+    for (int x = 0; x <= 20; ++x) rays << 0.03 * x << "," << 0.03 * y << ",0,0,0,-1,1\n";
+  rays.close();
+  for (const auto& [positions, spacing_m] : {std::pair(8, 0.6 / 7), std::pair(16, 0.04)}) {
+    const auto imported = lightwell({"luminaire", "import", path("panel.csv"), "--positions",
+                                     std::to_string(positions), "--out", path("lamp.exr"), "--json"});
+    ASSERT_EQ(imported.exit_code, 0) << imported.err;
+    const auto report = nlohmann::json::parse(imported.out);
+    EXPECT_EQ(report["positions"], (std::array{positions, positions}));
+    EXPECT_NEAR(report["spacing_m"].get<double>(), spacing_m, 1e-9);
+    EXPECT_NEAR(report["nearest_m"].get<double>(), 2 * spacing_m, 1e-9);
+    if (positions == 8)
+      EXPECT_THAT(imported.err, HasSubstr("its 8 x 8 sources are 0.0857 m apart: nearer than 0.171 m"));
+    else
+      EXPECT_EQ(imported.err, "") << "0.08 m is near enough";
+    EXPECT_EQ(report["remarks"].size(), positions == 8 ? 1u : 0u);
+  }
 }
 
 // What a file says comes out as it went in, to the nine digits that are written.

@@ -100,12 +100,30 @@ TEST(LuminaireFile, BadInputIsRefusedInOneLine) {
       picture_with(
           head +
           R"("far": {"system": "C", "horizontal_deg": [0, 0], "vertical_deg": [0, 90], "candela": []}})"),
-      "far.horizontal_deg does not increase");
+      "far.horizontal_deg[1] = 0 does not increase: allowed increasing angles");
   expect_bad(
       picture_with(
           head +
           R"("far": {"system": "C", "horizontal_deg": [0], "vertical_deg": [0, 90], "candela": [1, -2]}})"),
       "far.candela");
+  const auto with_angles = [&](const std::string& system, const std::string& across,
+                               const std::string& along) {
+    return picture_with(head + R"("far": {"system": ")" + system + R"(", "horizontal_deg": )" + across +
+                        R"(, "vertical_deg": )" + along + R"(, "candela": [1, 2, 3, 4]}})");
+  };
+  expect_bad(with_angles("C", "[0]", "[30]"), "far.vertical_deg = an array of 1: allowed at least 2 angles");
+  expect_bad(with_angles("C", "[]", "[0, 90]"),
+             "far.horizontal_deg = an array of 0: allowed at least 1 angles");
+  expect_bad(with_angles("C", "[0, 360]", "[0, 90]"), "far.horizontal_deg[1] = 360: allowed 0 to below 360");
+  expect_bad(with_angles("C", "[-1, 10]", "[0, 90]"), "far.horizontal_deg[0] = -1: allowed 0 to below 360");
+  expect_bad(with_angles("C", "[0, 90]", "[0, 180.5]"), "far.vertical_deg[1] = 180.5: allowed 0 to 180");
+  expect_bad(with_angles("B", "[-91, 0]", "[0, 90]"), "far.horizontal_deg[0] = -91: allowed -90 to 90");
+  expect_bad(with_angles("B", "[0, 1]", "[0, 181]"), "far.vertical_deg[1] = 181: allowed -180 to 180");
+  expect_bad(with_angles("A", "[-181, 0]", "[0, 90]"), "far.horizontal_deg[0] = -181: allowed -180 to 180");
+  expect_bad(with_angles("A", "[0, 1]", "[-91, 90]"), "far.vertical_deg[0] = -91: allowed -90 to 90");
+  EXPECT_TRUE(with_angles("C", "[0, 359.9]", "[0, 180]"));
+  EXPECT_TRUE(with_angles("B", "[-90, 90]", "[-180, 180]"));
+  EXPECT_TRUE(with_angles("A", "[-180, 180]", "[-90, 90]"));
   const std::string near =
       R"("near": {"map": "plane", "positions": [1, 1], "spacing_m": 0.01, "first_m": [0, 0], "z_m": 0, "distance_m": 0.1, )";
   expect_bad(picture_with(head + near + R"("pixels": [3, 2], "low_m": [-1, -1], "high_m": [1, 1]}})"),

@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <map>
+#include <random>
 
 namespace lightwell {
 namespace {
@@ -162,6 +165,92 @@ TEST(NearField, IsDarkBehindTheSurfaceAndBehindTheLamp) {
   EXPECT_EQ(illuminance(lamp, {0, 0, 0}, Vec3d::UnitZ()).maxCoeff(), 0) << "in the sampling plane itself";
   EXPECT_EQ(subdivision_at(lamp, 1e-9), 16);
   EXPECT_EQ(subdivision_at(lamp, 100), 1);
+}
+
+// Positive noise: no two positions or pixels alike, the worst that interpolation between positions can meet.
+NearField noise_lamp(LampMap map, std::array<int, 2> positions) {
+  NearField lamp;
+  LampPlanes& p = lamp.intensity.planes;
+  p = planes(1, 6);
+  p.map = map;
+  p.positions = positions;
+  if (map == LampMap::hemisphere) {
+    p.low_m = Vec2d::Constant(-1);
+    p.high_m = Vec2d::Constant(1);
+  }
+  std::minstd_rand random(5);
+  std::uniform_real_distribution<float> unit(0, 1);
+  for (std::size_t i = 0; i < p.images() * p.image_size(); ++i)
+    lamp.intensity.values.emplace_back(unit(random), unit(random), unit(random));
+  return lamp;
+}
+constexpr std::array<std::array<int, 2>, 5> kGrids = {{{5, 5}, {1, 1}, {6, 1}, {1, 4}, {2, 3}}};
+
+// Candela from 10⁸ spacings away, in the direction of every pixel: their integral is what luminous_flux() says. Of planes the
+// illuminance of the measurement plane at every pixel, which is a flux.
+TEST(NearField, FluxIsTheSameAtEverySubdivision) {
+  for (const auto& grid : kGrids)
+    for (int subdivision = 1; subdivision <= 16; ++subdivision) {
+      const NearField around = noise_lamp(LampMap::hemisphere, grid);
+      Rgbd flux = Rgbd::Zero();
+      const LampPlanes& p = around.intensity.planes;
+      for (int t = 0; t < p.pixels[1]; ++t)
+        for (int s = 0; s < p.pixels[0]; ++s) {
+          const Vec3d direction = direction_from_square(p.pixel_centre(s, t));
+          constexpr double kFar_m = 1e8 * kSpacing_m;
+          flux += illuminance(around, kFar_m * direction, -direction, subdivision) * kFar_m * kFar_m *
+                  p.pixel_solid_angle_sr(Vec2d::Zero(), s, t);
+        }
+      EXPECT_LT((flux / luminous_flux(around) - 1).abs().maxCoeff(), 1e-6)
+          << grid[0] << "x" << grid[1] << ", " << subdivision;
+      const NearField ahead = noise_lamp(LampMap::plane, grid);
+      for (int t = 0; t < p.pixels[1]; ++t)
+        for (int s = 0; s < p.pixels[0]; ++s) {
+          const Vec2d at = ahead.intensity.planes.pixel_centre(s, t);
+          const Vec3d point(at.x(), at.y(), -kDistance_m);
+          EXPECT_LT((illuminance(ahead, point, Vec3d::UnitZ(), subdivision) /
+                         illuminance(ahead, point, Vec3d::UnitZ(), 1) -
+                     1)
+                        .abs()
+                        .maxCoeff(),
+                    1e-6)
+              << grid[0] << "x" << grid[1] << ", " << subdivision;
+        }
+    }
+}
+
+// Cubic convolution moves no light, nor does it spread any: the first and second moment of its weights are 0.
+TEST(NearField, FarLightIsTheSameAtEverySubdivision) {
+  for (const auto& grid : kGrids) {
+    NearField lamp = noise_lamp(LampMap::hemisphere, grid);
+    LampPlanes& p = lamp.intensity.planes;
+    p.first_m = -p.spacing_m / 2 * Vec2d(grid[0] - 1, grid[1] - 1);
+    for (std::size_t i = 0; i < p.images(); ++i)  // Lambertian; no two positions are as bright
+      for (std::size_t k = 0; k < p.image_size(); ++k) {
+        const auto [s, t] = std::div(static_cast<int>(k), p.pixels[0]);
+        lamp.intensity.values[i * p.image_size() + k] = Rgb::Constant(static_cast<float>(
+            (1.0 + static_cast<double>(i)) * -direction_from_square(p.pixel_centre(s, t)).z()));
+      }
+    for (const auto& [x, y] : {std::pair(0.0, 0.0), std::pair(2.0, 0.5), std::pair(-1.0, 4.0)}) {
+      const Vec3d point(x, y, -5);
+      const double plain = illuminance(lamp, point, Vec3d::UnitZ(), 1)[1];
+      for (int subdivision = 2; subdivision <= 16; ++subdivision)
+        EXPECT_NEAR(illuminance(lamp, point, Vec3d::UnitZ(), subdivision)[1] / plain, 1, 1e-6)
+            << grid[0] << "x" << grid[1] << ", " << subdivision << ", " << x;
+    }
+  }
+}
+
+TEST(NearField, OneRowIsALine) {
+  NearField lamp = noise_lamp(LampMap::hemisphere, {9, 1});
+  for (Rgb& value : lamp.intensity.values) value = Rgb::Ones();
+  // Before its middle, half a spacing away: an even line of 1 cd a spacing h, facing, E = 2 / (h r). Its ends are 9 r away,
+  // 0.6 % of the light.
+  const LampPlanes& p = lamp.intensity.planes;
+  const Vec2d middle = p.position(4, 0);
+  const double r = p.spacing_m / 2;
+  EXPECT_NEAR(illuminance(lamp, {middle.x(), middle.y(), -r}, Vec3d::UnitZ())[1] * r * p.spacing_m / 2, 1,
+              0.01);
 }
 
 // The rig's own integral against the product that the test's lamp is made of.
