@@ -26,7 +26,7 @@ TEST(FarFieldOf, RaysOfALambertianSquareAreACosine) {
                     100.0 / kRays});
   }
   const FarField far = far_field_of(bin_rays(rays, {4, 16}));
-  EXPECT_EQ(far.horizontal_deg.size(), 72u);
+  EXPECT_EQ(far.horizontal_deg.size(), static_cast<std::size_t>(FarGrid{}.planes));
   EXPECT_NEAR(luminous_flux(far), 100, 0.5);
   // 16² pixels have 1560 rays each, 2.5 %; four of them make a value.
   for (const double gamma : {0.0, 20.0, 40.0, 60.0})
