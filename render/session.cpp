@@ -99,6 +99,7 @@ class Session {
 
   // What a user should know of the picture that comes.
   void say_remarks() const {
+    for (const std::string& remark : lamps_.remarks()) say(remark);
     for (const std::string& remark : remarks_on_lamps(options_.luminaires, lamps_.lamps(), scene_))
       say(remark);
     if (const int side = renderer_->lamps().counts().map_side; side > 0 && side < options_.shadow_size)

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "interface/luminaire_file.h"
+#include "render/enclosing_mesh.h"
 #include "render/lamp_detail.h"
 #include "render/lamp_sources.h"
 
@@ -60,6 +61,11 @@ Result<ShownLamps> ShownLamps::open(const std::vector<LuminaireOptions>& lamps, 
       const auto found = node_named(lamp, scene);
       if (!found) return found.error();
       node = *found;
+      const auto named = std::count_if(scene.rig.nodes.begin(), scene.rig.nodes.end(),
+                                       [&](const RigNode& other) { return other.name == lamp.node; });
+      if (named > 1)
+        shown.remarks_.push_back("--luminaire-node " + lamp.node + ": " + std::to_string(named) +
+                                 " nodes have the name, the first carries " + lamp.file.string());
       shown.move_ = shown.move_ || on_a_moving_branch(scene.rig, *node);
     }
     shown.lamps_.push_back({there, lamp.pose, lamp.scale});
@@ -72,8 +78,15 @@ Result<ShownLamps> ShownLamps::open(const std::vector<LuminaireOptions>& lamps, 
 std::span<const PlacedLamp> ShownLamps::place(const Pose& pose) {
   for (std::size_t i = 0; i < lamps_.size(); ++i) {
     if (!nodes_[i]) continue;
-    if (const auto node = rigid(pose.world_from_node[*nodes_[i]]))
+    if (const auto node = rigid(pose.world_from_node[*nodes_[i]])) {
       lamps_[i].world_from_lamp = *node * from_parent_[i];
+      continue;
+    }
+    if (!without_axes_)
+      remarks_.emplace_back("--luminaire-node: the node of lamp " + std::to_string(i + 1) +
+                            " is scaled to 0, which has no axes: the lamp stays where it was last, or at "
+                            "its pose in the world");
+    without_axes_ = true;
   }
   return lamps_;
 }
@@ -92,8 +105,6 @@ std::vector<std::string> remarks_on_lamps(const std::vector<LuminaireOptions>& o
                                           std::span<const PlacedLamp> lamps, const Scene& scene) {
   std::vector<std::string> remarks;
   const Receivers receivers(scene);
-  constexpr std::size_t kLooks = 64;
-  const std::size_t step = 1 + receivers.places().size() / kLooks;
   for (std::size_t i = 0; i < lamps.size(); ++i) {
     const PlacedLamp& lamp = lamps[i];
     if (!(lamp.dimming > 0)) continue;
@@ -111,14 +122,15 @@ std::vector<std::string> remarks_on_lamps(const std::vector<LuminaireOptions>& o
       return (illuminance(*lamp.lamp, point, normal) > 0).any() ||
              (illuminance(*lamp.lamp, point, Vec3d(-normal)) > 0).any();
     };
-    bool any = false;
-    for (std::size_t k = 0; k < receivers.places().size() && !any; k += step)
-      any = lit(receivers.places()[k]);
-    if (!any)
-      remarks.push_back(options[i].file.string() +
-                        (luminous_flux(*lamp.lamp).maxCoeff() > 0
-                             ? ": from where it stands it lights nothing of the scene"
-                             : ": the lamp is dark"));
+    const auto places = receivers.places();
+    const std::string file = options[i].file.string();
+    if (!(luminous_flux(*lamp.lamp).maxCoeff() > 0))
+      remarks.push_back(file + ": the lamp is dark");
+    else if (enclosing_mesh(scene, lamp.world_from_lamp.translation()))
+      remarks.push_back(file + ": it stands inside a mesh of the scene, which hides its light");
+    else if (std::none_of(places.begin(), places.end(), lit))
+      remarks.push_back(file + ": from where it stands it lights none of the " +
+                        std::to_string(places.size()) + " places of the scene that were looked at");
   }
   return remarks;
 }

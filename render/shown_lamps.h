@@ -26,17 +26,22 @@ class ShownLamps {
   // Where they stand when the nodes are so.
   std::span<const PlacedLamp> place(const Pose& pose);
   [[nodiscard]] std::span<const PlacedLamp> lamps() const { return lamps_; }
+  // On nodes that are not what was meant, a sentence each: of those of open() and of the places until now.
+  [[nodiscard]] std::span<const std::string> remarks() const { return remarks_; }
 
  private:
   std::vector<PlacedLamp> lamps_;
   std::vector<Eigen::Isometry3d> from_parent_;     // the node, or the world
   std::vector<std::optional<std::size_t>> nodes_;  // of the rig
+  std::vector<std::string> remarks_;
+  bool without_axes_ = false;  // a node was, which is said
   bool move_ = false;
 };
 
 // Luminance of a white horizontal surface at a place under lamps, as white_floor_cd_m2 of lights. World.
 float white_floor_cd_m2(std::span<const PlacedLamp> lamps, const Vec3d& place);
-// Lamps that light nothing of the scene from where they stand, or have more positions than are drawn, a sentence each.
+// Lamps that were seen to light nothing of the scene from where they stand, are inside of a mesh, or have more positions than
+// are drawn, a sentence each.
 std::vector<std::string> remarks_on_lamps(const std::vector<LuminaireOptions>& options,
                                           std::span<const PlacedLamp> lamps, const Scene& scene);
 

@@ -42,7 +42,11 @@ class LuminaireCommand : public ::testing::Test {
         {{{"extras", {{"phong", {{"diffuse", colour}, {"specular", {0, 0, 0}}, {"exponent", 1}}}}}}});
     scene.primitive()["material"] = 0;
     scene.root["nodes"].push_back({{"name", "carrier"}, {"translation", {0.25, 0.25, 1}}});
-    scene.root["scenes"][0]["nodes"].push_back(1);
+    // One name twice, the second scaled to nothing, as is the only one of its name.
+    scene.root["nodes"].push_back({{"name", "twin"}, {"translation", {0.25, 0.25, 1}}});
+    scene.root["nodes"].push_back({{"name", "twin"}, {"scale", {0, 0, 0}}});
+    scene.root["nodes"].push_back({{"name", "nothing"}, {"scale", {0, 0, 0}}});
+    for (const int node : {1, 2, 3, 4}) scene.root["scenes"][0]["nodes"].push_back(node);
     test::animate(scene, 1, "translation", {0, 1}, {0.25f, 0.25f, 1, 0.25f, 0.25f, 2}, "VEC3", 3);
     std::ofstream(scene_) << scene.text();
   }
@@ -103,8 +107,19 @@ TEST_F(LuminaireCommand, LampThatLightsNothingIsSaid) {
   ChildProcess program = start_render(folder_.path(), arguments({"--luminaire", lamp_, "--luminaire-scale",
                                                                  "1", "--luminaire-pose", "0.25,0.25,0"}));
   ASSERT_EQ(program.wait(), 0) << program.stderr_text();
-  EXPECT_NE(program.stderr_text().find("lights nothing of the scene"), std::string::npos)
+  EXPECT_NE(program.stderr_text().find("lights none of the 256 places of the scene"), std::string::npos)
       << program.stderr_text();
+}
+
+TEST_F(LuminaireCommand, NodeThatMayNotBeMeantIsSaid) {
+  for (const auto& [node, said] : {std::pair("twin", "twin: 2 nodes have the name, the first carries"),
+                                   std::pair("nothing", "scaled to 0")}) {
+    ChildProcess program =
+        start_render(folder_.path(), arguments({"--luminaire", lamp_, "--luminaire-node", node,
+                                                "--luminaire-pose", "0,0,1", "--out", file("n.exr")}));
+    ASSERT_EQ(program.wait(), 0) << program.stderr_text();
+    EXPECT_NE(program.stderr_text().find(said), std::string::npos) << program.stderr_text();
+  }
 }
 
 TEST_F(LuminaireCommand, BadInputIsRefusedInOneLine) {
