@@ -184,11 +184,11 @@ std::vector<Row> ray_rows(const Options& options) {
       {"text read",
        [&](std::size_t) { verify_bug(parse_plain_rays(text, "").ok(), "bench: rays are refused"); },
        {}},
-      {"binned to 8x8 sources of 64x64", [&](std::size_t) { (void)bin_rays(rays, {}); }, {}}};
+      {"binned to 8x8 sources", [&](std::size_t) { (void)bin_rays(rays, {}); }, {}}};
   for (Row& row : time_in_turns("import, " + name, std::move(cases), options, "", {1, 5}))
     rows.push_back(rate(std::move(row)));
   for (const int positions : {2, 4, 8, 16}) {
-    const Luminaire lamp = bin_rays(rays, {positions, 64});
+    const Luminaire lamp = bin_rays(rays, {positions, 0});
     for (const double distance : {0.1, 0.3, 1.0}) {
       const auto begin = std::chrono::steady_clock::now();
       const PlaneError error = plane_error(rays, lamp, distance);

@@ -150,9 +150,10 @@ Command add_luminaire_import(CLI::App& luminaire) {
                    "Of a ray file: point sources a side; a long lamp has as many in all")
       ->check(whole_numbers(2, 64))
       ->capture_default_str();
-  command->add_option("--pixels", o->rays.pixels, "Of a ray file: pixels a side of each source's image")
-      ->check(whole_numbers(8, 1024))
-      ->capture_default_str();
+  command
+      ->add_option("--pixels", o->rays.pixels,
+                   "Of a ray file: pixels a side of each source's image; else as fine as its noise allows")
+      ->check(whole_numbers(8, 1024));
   command
       ->add_option(
           "--tilt", o->tilt_deg,

@@ -107,7 +107,8 @@ LampPlanes planes_of(std::span<const LampRay> rays, const RayBinning& options) {
   planes.map = LampMap::hemisphere;
   planes.low_m = Vec2d::Constant(-1);
   planes.high_m = Vec2d::Constant(1);
-  planes.pixels = {options.pixels, options.pixels};
+  const int side = options.pixels > 0 ? options.pixels : pixels_for(rays.size());
+  planes.pixels = {side, side};
   std::vector<Weighted> heights;
   for (const LampRay& ray : rays) heights.push_back({ray.origin_m.z(), ray.flux_lm});
   planes.z_m = quantile(heights, 0.5);
@@ -147,8 +148,15 @@ std::vector<double> node_solid_angles(FarField table) {
 
 }  // namespace
 
+int pixels_for(std::size_t rays) {
+  constexpr double kRaysAPixel = 150;
+  return static_cast<int>(
+      std::clamp(std::round(std::sqrt(static_cast<double>(rays) / kRaysAPixel)), 16.0, 128.0));
+}
+
 Luminaire bin_rays(std::span<const LampRay> rays, const RayBinning& options) {
-  verify_bug(!rays.empty() && options.positions >= 2 && options.pixels >= 2, "nothing to bin, or no bins");
+  verify_bug(!rays.empty() && options.positions >= 2 && (options.pixels == 0 || options.pixels >= 2),
+             "nothing to bin, or no bins");
   Luminaire lamp;
   LampImages& images = lamp.near.emplace().intensity;
   images.planes = planes_of(rays, options);

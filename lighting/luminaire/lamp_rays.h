@@ -18,8 +18,12 @@ struct LampRay {
 struct RayBinning {
   int positions =
       8;  // a side, over where 99.9 % of the flux crosses the sampling plane; of a long lamp as many in all
-  int pixels = 64;  // a side of an image
+  int pixels = 0;  // a side of an image; 0: pixels_for()
 };
+
+// So many pixels a side that in each, over all positions, 150 rays are looked for: their noise, 8 % of a pixel, drowns in
+// neighbouring pixels' light. 16 to 128.
+int pixels_for(std::size_t rays);
 
 // Shares every ray out among the four nearest positions and pixels: no flux is lost. The sampling plane lies at the
 // origins' median height by flux. rays: at least one, flux above 0.
