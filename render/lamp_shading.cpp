@@ -123,12 +123,14 @@ void LampShading::fill_block(Part& part) const {
                   rows.data());
 }
 
-Status LampShading::choose_group(Drawn& drawn, const Sphere& objects) {
+Status LampShading::choose_group(Drawn& drawn, const Casters& casters) {
   const Luminaire& lamp = *drawn.lamp.lamp;
   if (!lamp.near) return {};
   std::vector<Vec3d> seen = places_seen(receivers_, drawn.lamp.world_from_lamp);
   if (drawn.chosen && !moved_much(drawn.chosen_for, seen)) return {};
-  const int group = drawn.detail.choose(*lamp.near, options_.max_error, receivers_.places(), objects,
+  if (!outlines_) outlines_.emplace(casters);
+  const auto outlines = outlines_->seen_from(lamp_eye(*lamp.near, drawn.lamp.world_from_lamp), casters);
+  const int group = drawn.detail.choose(*lamp.near, options_.max_error, {receivers_.places(), outlines},
                                         drawn.lamp.world_from_lamp, least_group(*lamp.near), drawn.group);
   drawn.chosen = true;
   drawn.chosen_for = std::move(seen);
@@ -144,7 +146,7 @@ Status LampShading::choose_group(Drawn& drawn, const Sphere& objects) {
   return {};
 }
 
-Status LampShading::set(std::span<const PlacedLamp> lamps, const Sphere& objects) {
+Status LampShading::set(std::span<const PlacedLamp> lamps, const Casters& casters) {
   while (lamps_.size() > lamps.size()) lamps_.pop_back();
   for (std::size_t i = 0; i < lamps.size(); ++i) {
     const PlacedLamp& lamp = lamps[i];
@@ -171,13 +173,13 @@ Status LampShading::set(std::span<const PlacedLamp> lamps, const Sphere& objects
         if (*part) (*part)->stale = true;
     drawn.lamp = lamp;
   }
-  return choose_groups(objects);
+  return choose_groups(casters);
 }
 
-Status LampShading::choose_groups(const Sphere& objects) {
+Status LampShading::choose_groups(const Casters& casters) {
   for (Drawn& drawn : lamps_)
     if (shines(drawn.lamp))
-      if (Status s = choose_group(drawn, objects); !s) return s;
+      if (Status s = choose_group(drawn, casters); !s) return s;
   surfaces_moved_ = false;
   return {};
 }

@@ -28,13 +28,13 @@ class LampShading {
   static LampShading create(const Scene& scene, bool nothing_casts, const LampOptions& options);
 
   // The lamps as they now stand. One that is there already keeps what did not change: one that stays keeps its maps.
-  // What gives what: the scene's surfaces and objects, on which the detail depends.
+  // casters: on which the detail depends.
   // bad_input: more light in an image than numbers hold; failed: what the driver cannot do
-  Status set(std::span<const PlacedLamp> lamps, const Sphere& objects);
+  Status set(std::span<const PlacedLamp> lamps, const Casters& casters);
   // The scene that it was made of moved; by so much at most what casts.
   void follow(const Scene& scene, float farthest_m);
   // Before a frame: which positions are drawn together follows a scene that moved under lamps that rest. Errors as of set().
-  Status follow_detail(const Sphere& objects) { return surfaces_moved_ ? choose_groups(objects) : Status(); }
+  Status follow_detail(const Casters& casters) { return surfaces_moved_ ? choose_groups(casters) : Status(); }
 
   // What casts, by how fine it is to be: for maps up to shadow_size, and for larger ones and lamps nearby.
   struct AllCasters {
@@ -88,8 +88,8 @@ class LampShading {
     gl::Program program;
   };
   Result<Part> upload(LampSources sources) const;
-  Status choose_groups(const Sphere& objects);
-  Status choose_group(Drawn& drawn, const Sphere& objects);
+  Status choose_groups(const Casters& casters);
+  Status choose_group(Drawn& drawn, const Casters& casters);
   Status draw_maps(Drawn& drawn, Part& part, const AllCasters& casters);
   void fill_block(Part& part) const;
   Result<const gl::Program*> program(SourceMap map, int faces);
@@ -99,7 +99,8 @@ class LampShading {
   MaterialKinds kinds_;
   bool nothing_casts_ = false;
   Receivers receivers_;
-  bool surfaces_moved_ = false;  // since groups were chosen
+  std::optional<CasterOutlines> outlines_;  // made when they are first asked for
+  bool surfaces_moved_ = false;             // since groups were chosen
   std::vector<Drawn> lamps_;
   std::vector<Program> programs_;
   gl::Program map_program_;

@@ -170,7 +170,7 @@ Status Renderer::set_field(const LightField& field, const MainLights& main_light
 }
 
 Status Renderer::set_lamps(std::span<const PlacedLamp> lamps) {
-  return lamps_.set(lamps, object_bounds());
+  return lamps_.set(lamps, casters_);
 }
 
 Status Renderer::set_plate(const Plate& plate, float white) {
@@ -223,7 +223,7 @@ Status Renderer::render(const LightSet& given, const SceneCamera& camera, double
   std::vector<LightRow> rows = make_light_rows(lights.lights, casters_);
   shadow_maps_ = nothing_casts_ ? 0 : rows.size();
   shadow_maps_drawn_ = 0;
-  if (Status s = lamps_.follow_detail(object_bounds()); !s) return s;
+  if (Status s = lamps_.follow_detail(casters_); !s) return s;
   if (Status s = draw_lamp_maps(); !s) return s;
   const int samples = options_.samples;
   // A plate is seen through each sample, so that its sum over the lights must be known first.

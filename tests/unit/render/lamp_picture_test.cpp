@@ -476,5 +476,33 @@ TEST_F(LampPictures, FewerPointsStayWithinTheErrorThatIsAsked) {
   EXPECT_LE(std::sqrt(off / sum), 0.03);
 }
 
+// 15 cm below a lamp 20 cm wide, far above the floor: a box, then a flag.
+TEST_F(LampPictures, WhatHangsCloseBelowALampThrowsShadowsWithinTheErrorThatIsAsked) {
+  const std::vector<PlacedLamp> lamps = {
+      {shared({"", patterned_lamp(13, 13, 0.2 / 12, 128), {}}), aimed_down({0, 1.2, 0}), 1}};
+  for (const bool flag : {false, true}) {
+    Scene scene;
+    add_ground(scene, lambertian(Rgb::Constant(0.6f)), true, 1.5f);
+    add_box(scene, {0.5f, 0, -0.3f}, {0.8f, 0.2f, 0}, lambertian(Rgb::Constant(0.5f)));  // one more, far away
+    if (flag)
+      add_box(scene, {-0.05f, 1.04f, -0.05f}, {0.1f, 1.05f, 0.05f}, lambertian(Rgb::Constant(0.5f)));
+    else
+      add_box(scene, {-0.06f, 0.93f, -0.06f}, {0.06f, 1.05f, 0.06f}, lambertian(Rgb::Constant(0.5f)));
+    auto all = renderer_of(scene);
+    const auto exact = picture_of(all, lamps, stage_camera());
+    for (const double bound : {0.05, 0.1, 0.15, 0.2}) {
+      auto fewer = renderer_of(scene, bound);
+      const auto together = picture_of(fewer, lamps, stage_camera());
+      double off = 0, sum = 0;
+      for (std::size_t k = 0; k < exact.rgba.size(); ++k) {
+        if (k % 4 == 3) continue;
+        off += std::pow(static_cast<double>(exact.rgba[k] - together.rgba[k]), 2);
+        sum += std::pow(static_cast<double>(exact.rgba[k]), 2);
+      }
+      EXPECT_LE(std::sqrt(off / sum), bound) << flag;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lightwell

@@ -107,15 +107,23 @@ class Detail : public ::testing::Test {
     add_ground(scene_, lambertian(Rgb::Constant(0.5f)), false, 1);
     add_box(scene_, {-0.1f, 0, -0.1f}, {0.1f, 0.2f, 0.1f}, lambertian(Rgb::Constant(0.5f)));
     receivers_ = Receivers(scene_);
+    casters_ = find_casters(scene_);
+  }
+  [[nodiscard]] LampDetail::Error error_at(double height_m, int group) const {
+    const auto pose = aimed_down({0, height_m, 0});
+    const auto outlines = CasterOutlines(casters_).seen_from(lamp_eye(lamp_, pose), casters_);
+    return detail_.error(lamp_, group, {receivers_.places(), outlines}, pose);
   }
   [[nodiscard]] int group_at(double height_m, double bound, int now = 0) const {
-    return detail_.choose(lamp_, bound, receivers_.places(), objects_, aimed_down({0, height_m, 0}), 1, now);
+    const auto pose = aimed_down({0, height_m, 0});
+    const auto outlines = CasterOutlines(casters_).seen_from(lamp_eye(lamp_, pose), casters_);
+    return detail_.choose(lamp_, bound, {receivers_.places(), outlines}, pose, 1, now);
   }
   Scene scene_;
   Receivers receivers_;
   NearField lamp_ = patterned_lamp(9, 7, 0.005, 24, 0.1, 0.1);
   LampDetail detail_{lamp_};
-  Sphere objects_{{0, 0.1f, 0}, 0.2f};
+  Casters casters_;
 };
 
 TEST_F(Detail, FewerPointsServeFartherAwayDownToOne) {
@@ -132,22 +140,51 @@ TEST_F(Detail, FewerPointsServeFartherAwayDownToOne) {
 TEST_F(Detail, WhatIsChosenErrsByNoMoreThanIsAllowed) {
   for (const double height : {0.5, 2.0, 8.0}) {
     const int group = group_at(height, 0.02);
-    const auto error = detail_.error(lamp_, group, receivers_.places(), objects_, aimed_down({0, height, 0}));
-    EXPECT_LE(error.total(), 0.02) << height;
+    EXPECT_LE(error_at(height, group).total(), 0.02) << height;
   }
-  const auto none = detail_.error(lamp_, 1, receivers_.places(), objects_, aimed_down({0, 0.5, 0}));
-  EXPECT_LT(none.total(), 1e-12);  // the rounding of the middles
+  EXPECT_LT(error_at(0.5, 1).total(), 1e-12);  // the rounding of the middles
 }
 
 TEST_F(Detail, GroupThatIsDrawnStaysWhileItServes) {
   // Just within the bound from one side: from the other it waits for half of it.
-  const auto error_at = [&](double height) {
-    return detail_.error(lamp_, 9, receivers_.places(), objects_, aimed_down({0, height, 0})).total();
-  };
-  const double bound = 1.2 * error_at(20);
+  const double bound = 1.2 * error_at(20, 9).total();
   EXPECT_EQ(group_at(20, bound, 0), 9);
   EXPECT_EQ(group_at(20, bound, 9), 9);
   EXPECT_LT(group_at(20, bound, 3), 9);
+}
+
+TEST_F(Detail, LampOfManyPositionsIsLookedAtFromFewerPlacesThatSayTheSame) {
+  EXPECT_EQ(places_looked_at(256, 63), 256u);
+  EXPECT_LE(2048 * places_looked_at(2048, 2048) / 2048, 64u);
+  EXPECT_EQ(places_looked_at(10, 1089), 10u);
+  // Of the ground's and the box's places a quarter.
+  lamp_ = patterned_lamp(23, 23, 0.002, 12, 0.1, 0.1);
+  detail_ = LampDetail(lamp_);
+  ASSERT_LT(places_looked_at(256, 23 * 23), 70u);
+  const double few = error_at(0.5, 8).pattern;
+  // Four lamps of a quarter of the positions, each looked at from all places, have the same pattern within the noise.
+  lamp_ = patterned_lamp(11, 11, 0.0042, 12, 0.1, 0.1);
+  detail_ = LampDetail(lamp_);
+  ASSERT_EQ(places_looked_at(256, 11 * 11), 256u);
+  EXPECT_NEAR(few / error_at(0.5, 4).pattern, 1, 0.3);
+}
+
+TEST(CasterOutline, BallHasACircleAndAFlagItsBorder) {
+  Scene scene;
+  add_sphere(scene, {0, 0, 0}, 0.5f, lambertian(Rgb::Constant(0.5f)));
+  add_mesh(scene, {{-0.1f, 1, -0.2f}, {0.1f, 1, -0.2f}, {0.1f, 1, 0.2f}, {-0.1f, 1, 0.2f}}, {},
+           {0, 1, 2, 0, 2, 3}, lambertian(Rgb::Constant(0.5f)));
+  const Casters casters = find_casters(scene);
+  const auto outlines = CasterOutlines(casters).seen_from({0, 20, 0}, casters);
+  ASSERT_EQ(outlines.size(), 2u);
+  for (const CasterOutline& outline : outlines) {
+    const bool ball = outline.primitive == 0;
+    // From afar angles are lengths over the distance; a ball's edges run to and fro about the circle.
+    const double distance = ball ? 20 : 19, length = ball ? kPi : 1.2;
+    EXPECT_NEAR(outline.length_rad * distance / length, 1, ball ? 0.1 : 0.001);
+    EXPECT_NEAR(outline.rad_per_m / outline.length_rad * distance, 1, 0.01);
+    EXPECT_NEAR(outline.half_angle_rad * distance, ball ? 0.5 : std::sqrt(0.05), 0.01);
+  }
 }
 
 }  // namespace
